@@ -1,0 +1,194 @@
+use std::ops::ControlFlow;
+
+use thiserror::Error;
+
+use crate::{CoreError, Filled, Gap, Take};
+
+/// Fills the gaps of a take.
+///
+/// # Contract
+/// - Observed samples come back bit for bit; [`Filled::merge`] sees to it.
+/// - A filled sample is finite. A gap that the method cannot fill stays open and is listed in
+///   [`FillReport::refusals`].
+/// - A marker that is never seen stays open with [`Refusal::NeverSeen`], unless the method has other
+///   knowledge of it.
+/// - The same take and parameters give the same bits, on any number of threads.
+/// - Running out of iterations is a [`Termination`], not an error.
+pub trait GapFiller: Send + Sync {
+    /// Short name of the method, as users type it.
+    fn name(&self) -> &str;
+
+    /// Fills the gaps and tells `observer` after each iteration; the observer may stop the work, and
+    /// the best fill so far is returned.
+    ///
+    /// # Errors
+    /// [`FillError`] where the method cannot run on this take at all.
+    fn fill_observed(
+        &self,
+        take: &Take,
+        observer: &mut dyn FnMut(&IterReport) -> ControlFlow<()>,
+    ) -> Result<Filled, FillError>;
+
+    /// Fills the gaps.
+    ///
+    /// # Errors
+    /// As [`fill_observed`](Self::fill_observed).
+    fn fill(&self, take: &Take) -> Result<Filled, FillError> {
+        self.fill_observed(take, &mut |_| ControlFlow::Continue(()))
+    }
+}
+
+/// State of an iterative method after one iteration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct IterReport {
+    /// Iterations done, counted from 1.
+    pub iteration: usize,
+    /// Iterations at most.
+    pub limit: usize,
+    /// The method's objective, as [`FillReport::objective`] lists it.
+    pub objective: f64,
+}
+
+/// Why a method ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Termination {
+    /// The method has no iterations.
+    ClosedForm,
+    /// There was no gap to fill.
+    NothingToFill,
+    /// Its stop rule held.
+    Converged,
+    /// It ran all its iterations.
+    IterationLimit,
+    /// It could improve no further, short of its stop rule.
+    Stalled,
+    /// The observer stopped it.
+    Stopped,
+}
+
+impl Termination {
+    /// The name that reports use.
+    #[must_use]
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::ClosedForm => "closed-form",
+            Self::NothingToFill => "nothing-to-fill",
+            Self::Converged => "converged",
+            Self::IterationLimit => "iteration-limit",
+            Self::Stalled => "stalled",
+            Self::Stopped => "stopped",
+        }
+    }
+}
+
+/// Why a gap was left open.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[non_exhaustive]
+pub enum Refusal {
+    /// The marker is seen in no frame.
+    #[error("the marker is never seen")]
+    NeverSeen,
+    /// The method needs observed samples on both sides of a gap.
+    #[error("the gap reaches the start or end of the take")]
+    OneSided,
+    /// The gap is longer than the user allows.
+    #[error("the gap lasts {gap_s:.3} s, longer than the limit of {limit_s:.3} s")]
+    TooLong {
+        /// Length of the gap in seconds.
+        gap_s: f64,
+        /// The limit in seconds.
+        limit_s: f64,
+    },
+    /// Too few observed samples of the marker.
+    #[error("the marker is seen in {seen} frames, {needed} are needed")]
+    TooFewSamples {
+        /// Frames that show the marker.
+        seen: usize,
+        /// Frames that the method needs.
+        needed: usize,
+    },
+    /// The method's answer was not finite.
+    #[error("the method gave no finite position")]
+    NotFinite,
+}
+
+/// A gap that was left open.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Refused {
+    /// The gap.
+    pub gap: Gap,
+    /// Why.
+    pub reason: Refusal,
+}
+
+/// How a fill came about.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct FillReport {
+    /// Name of the method.
+    pub method: String,
+    /// Why it ended.
+    pub termination: Termination,
+    /// Iterations done; 0 for a closed form.
+    pub iterations: usize,
+    /// Its objective after each iteration, `(iterations,)`; the method's docs say what it is.
+    pub objective: Vec<f64>,
+    /// Gaps left open.
+    pub refusals: Vec<Refused>,
+}
+
+impl FillReport {
+    /// A report without iterations, objective or refusals.
+    #[must_use]
+    pub fn new(method: impl Into<String>, termination: Termination) -> Self {
+        Self {
+            method: method.into(),
+            termination,
+            iterations: 0,
+            objective: Vec::new(),
+            refusals: Vec::new(),
+        }
+    }
+}
+
+/// Why a method cannot run on a take at all.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum FillError {
+    /// The take is too short.
+    #[error("the take has {frames} frames, but {method} needs {needed}")]
+    TooFewFrames {
+        /// Name of the method.
+        method: &'static str,
+        /// Frames of the take.
+        frames: usize,
+        /// Frames that the method needs.
+        needed: usize,
+    },
+    /// Nothing was observed.
+    #[error("the take shows no marker in any frame; there is nothing to fill from")]
+    NothingObserved,
+    /// A parameter out of its range.
+    #[error("parameter `{field}` is {value}; it must be {rule}")]
+    Parameter {
+        /// Name of the parameter.
+        field: &'static str,
+        /// The value as given.
+        value: f64,
+        /// The allowed range.
+        rule: &'static str,
+    },
+    /// A value that the core types refuse.
+    #[error(transparent)]
+    Core(#[from] CoreError),
+    /// An error of the method's own.
+    #[error("{method} failed")]
+    Method {
+        /// Name of the method.
+        method: &'static str,
+        /// What went wrong.
+        #[source]
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
+}

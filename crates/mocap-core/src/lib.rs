@@ -1,0 +1,31 @@
+#![doc = include_str!("../README.md")]
+
+mod body_frame;
+mod bones;
+mod error;
+mod filled;
+mod filler;
+mod gap;
+pub mod geometry;
+mod holdout;
+mod knowledge;
+mod marker_set;
+mod mask;
+mod skeleton;
+mod solver;
+mod take;
+
+pub use body_frame::{BodyFrame, BodyMarkers, UpAxis};
+pub use bones::{Bone, BoneRule, BoneSet, RigidPairs};
+pub use error::CoreError;
+pub use filled::{CellState, Estimates, Filled};
+pub use filler::{FillError, FillReport, GapFiller, IterReport, Refusal, Refused, Termination};
+pub use gap::{Gap, GapContext};
+pub use geometry::{RigidTransform, Rotation};
+pub use holdout::Holdout;
+pub use knowledge::MarkerKnowledge;
+pub use marker_set::MarkerSet;
+pub use mask::Mask;
+pub use skeleton::{Joint, Motion, Pose, Skeleton};
+pub use solver::{MotionSolver, SolveError, Solved};
+pub use take::Take;

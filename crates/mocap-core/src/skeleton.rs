@@ -1,0 +1,132 @@
+use std::sync::Arc;
+
+use crate::{CoreError, Rotation, geometry::add};
+
+/// A joint of a skeleton.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Joint {
+    /// Name, unique in its skeleton.
+    pub name: String,
+    /// Index of the parent; `None` for the root alone.
+    pub parent: Option<usize>,
+    /// Place relative to the parent in the rest pose, in metres.
+    pub offset_m: [f64; 3],
+}
+
+/// A tree of joints: the root first, and parents before their children.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Skeleton {
+    joints: Vec<Joint>,
+}
+
+impl Skeleton {
+    /// Checks and takes the joints.
+    ///
+    /// # Errors
+    /// [`CoreError::JointOrder`] unless the first joint is the only root and each other joint
+    /// names an earlier one as parent; [`CoreError::DuplicateMarkerName`] for two joints of one name.
+    pub fn new(joints: Vec<Joint>) -> Result<Self, CoreError> {
+        for (i, joint) in joints.iter().enumerate() {
+            let in_order = match joint.parent {
+                None => i == 0,
+                Some(parent) => parent < i,
+            };
+            if !in_order {
+                let name = joint.name.clone();
+                return Err(CoreError::JointOrder { joint: i, name, parent: joint.parent });
+            }
+        }
+        crate::MarkerSet::new(joints.iter().map(|j| j.name.as_str()))?;
+        Ok(Self { joints })
+    }
+
+    /// The joints, parents first.
+    #[must_use]
+    pub fn joints(&self) -> &[Joint] {
+        &self.joints
+    }
+
+    /// Index of a joint by name.
+    #[must_use]
+    pub fn find(&self, name: &str) -> Option<usize> {
+        self.joints.iter().position(|j| j.name == name)
+    }
+
+    /// Forward kinematics: the joints' positions in metres, `(joints, 3)`.
+    ///
+    /// # Errors
+    /// [`CoreError::PoseLength`].
+    pub fn positions(&self, pose: &Pose) -> Result<Vec<[f64; 3]>, CoreError> {
+        if pose.rotations.len() != self.joints.len() {
+            let (expected, found) = (self.joints.len(), pose.rotations.len());
+            return Err(CoreError::PoseLength { expected, found });
+        }
+        let mut placed: Vec<([f64; 3], Rotation)> = Vec::with_capacity(self.joints.len());
+        for (joint, &rotation) in self.joints.iter().zip(&pose.rotations) {
+            placed.push(match joint.parent.map(|p| placed[p]) {
+                None => (add(pose.root_m, joint.offset_m), rotation),
+                Some((origin, turn)) => {
+                    (add(origin, turn.apply(joint.offset_m)), turn.after(rotation))
+                }
+            });
+        }
+        Ok(placed.into_iter().map(|(origin, _)| origin).collect())
+    }
+}
+
+/// One frame of a skeleton's motion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pose {
+    /// Translation of the root in metres.
+    pub root_m: [f64; 3],
+    /// Rotation of each joint relative to its parent, `(joints,)`.
+    pub rotations: Vec<Rotation>,
+}
+
+/// A skeleton and its poses over time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motion {
+    skeleton: Arc<Skeleton>,
+    rate_hz: f64,
+    poses: Vec<Pose>,
+}
+
+impl Motion {
+    /// Takes poses of a skeleton at a sampling rate.
+    ///
+    /// # Errors
+    /// [`CoreError::Rate`] and [`CoreError::PoseLength`].
+    pub fn new(
+        skeleton: impl Into<Arc<Skeleton>>,
+        rate_hz: f64,
+        poses: Vec<Pose>,
+    ) -> Result<Self, CoreError> {
+        let skeleton = skeleton.into();
+        if !(rate_hz.is_finite() && rate_hz > 0.0) {
+            return Err(CoreError::Rate { rate_hz });
+        }
+        let expected = skeleton.joints().len();
+        match poses.iter().map(|p| p.rotations.len()).find(|&found| found != expected) {
+            Some(found) => Err(CoreError::PoseLength { expected, found }),
+            None => Ok(Self { skeleton, rate_hz, poses }),
+        }
+    }
+
+    /// The skeleton.
+    #[must_use]
+    pub fn skeleton(&self) -> &Arc<Skeleton> {
+        &self.skeleton
+    }
+
+    /// Sampling rate in Hz.
+    #[must_use]
+    pub fn rate_hz(&self) -> f64 {
+        self.rate_hz
+    }
+
+    /// The poses, one a frame.
+    #[must_use]
+    pub fn poses(&self) -> &[Pose] {
+        &self.poses
+    }
+}
