@@ -302,7 +302,10 @@ mod tests {
             let (i, j, k) = up.axes();
             let mut e = [[0.0; 3]; 3];
             (e[0][i], e[1][j], e[2][k]) = (1.0, 1.0, 1.0);
-            assert!((crate::geometry::dot(crate::geometry::cross(e[0], e[1]), e[2]) - 1.0).abs() < 1e-15);
+            assert!(
+                (crate::geometry::dot(crate::geometry::cross(e[0], e[1]), e[2]) - 1.0).abs()
+                    < 1e-15
+            );
         }
     }
 }
