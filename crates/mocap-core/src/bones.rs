@@ -1,4 +1,4 @@
-use crate::{CoreError, Take};
+use crate::{CoreError, MarkerKnowledge, Take};
 
 /// Two markers a fixed distance apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,7 +60,13 @@ pub enum BoneRule {
     Pairs(Vec<(usize, usize)>),
     /// Pairs whose distance hardly changes.
     Rigid(RigidPairs),
+    /// The pairs of the first of these marker sets of which the take wears at least half; if it wears
+    /// none, the pairs whose distance hardly changes.
+    Known(Vec<MarkerKnowledge>),
 }
+
+/// Share of a marker set that a take has to wear for the set's bones to be believed.
+const WORN: f64 = 0.5;
 
 /// When two markers count as fixed to one bone.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -114,6 +120,12 @@ impl BoneSet {
         match rule {
             BoneRule::Pairs(pairs) => Self::from_pairs(take, pairs),
             BoneRule::Rigid(rule) => Self::rigid(take, *rule),
+            BoneRule::Known(sets) => {
+                match sets.iter().find(|set| set.coverage(take.markers()) >= WORN) {
+                    Some(set) => Self::from_pairs(take, &set.bone_pairs(take.markers())),
+                    None => Self::rigid(take, RigidPairs::default()),
+                }
+            }
         }
     }
 

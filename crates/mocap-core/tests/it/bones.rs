@@ -1,4 +1,4 @@
-use mocap_core::{Bone, BoneRule, BoneSet, CoreError, RigidPairs};
+use mocap_core::{Bone, BoneRule, BoneSet, CoreError, MarkerKnowledge, RigidPairs};
 
 use crate::take;
 
@@ -47,4 +47,20 @@ fn rigid_pairs_are_found_and_moving_ones_are_not() {
     assert_eq!(bones.len(), 1);
     assert_eq!(bones.bones()[0].markers(), (0, 1));
     assert!(bones.check(&input.select(&[0]).unwrap()).is_err());
+}
+
+#[test]
+fn known_pairs_come_before_rigid_ones() {
+    // Markers 0 and 1 are rigid; the known set names 1 and 2, which swing.
+    let input = take(50, 3, |t, m| {
+        let swing = 0.05 * (t as f64 / 8.0).sin();
+        Some([[0.0; 3], [0.2, 0.0, 0.0], [0.5 + swing, 0.0, 0.0]][m])
+    });
+    let text = "marker m1\nmarker m2\nbone m1 m2";
+    let known = MarkerKnowledge::parse(text, "pair").unwrap();
+    let bones = BoneSet::estimate(&input, &BoneRule::Known(vec![known])).unwrap();
+    assert_eq!(bones.bones().iter().map(Bone::markers).collect::<Vec<_>>(), [(1, 2)]);
+    let foreign = MarkerKnowledge::cmu_41();
+    let bones = BoneSet::estimate(&input, &BoneRule::Known(vec![foreign])).unwrap();
+    assert_eq!(bones.bones().iter().map(Bone::markers).collect::<Vec<_>>(), [(0, 1)]);
 }

@@ -11,7 +11,7 @@ use mocap_core::{MarkerSet, Take};
 use ndarray::Array3;
 
 /// Markers `m0 …` at the positions that `place(frame, marker)` gives, NaN for none.
-pub fn take(
+pub(crate) fn take(
     frames: usize,
     markers: usize,
     place: impl Fn(usize, usize) -> Option<[f64; 3]>,
