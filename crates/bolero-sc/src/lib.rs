@@ -1,0 +1,12 @@
+#![doc = include_str!("../README.md")]
+
+mod filler;
+mod hook;
+mod params;
+mod problem;
+mod solver;
+
+pub use filler::BoleroSc;
+pub use hook::SoftBones;
+pub use params::{BoleroScParams, Bones};
+pub use solver::Solver;

@@ -1,0 +1,81 @@
+use lds_kalman::{EStep, filler::LdsFillerParams};
+use mocap_core::{BoneRule, BoneSet, FillError, MarkerKnowledge, RigidPairs, Take};
+
+use crate::solver::Solver;
+
+/// Where the bones come from.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Bones {
+    /// The named pairs of the CMU marker set where a take has any of them, else the pairs whose
+    /// distance hardly changes; lengths from the visible samples.
+    #[default]
+    Auto,
+    /// By this rule; lengths from the visible samples.
+    Estimated(BoneRule),
+    /// These, with these lengths.
+    Given(BoneSet),
+}
+
+impl Bones {
+    /// The bones of a take.
+    ///
+    /// # Errors
+    ///
+    /// [`FillError::Core`] for bones that name markers the take does not have.
+    pub fn find(&self, take: &Take) -> Result<BoneSet, FillError> {
+        let bones = match self {
+            Self::Given(bones) => bones.clone(),
+            Self::Estimated(rule) => BoneSet::estimate(take, rule)?,
+            Self::Auto => {
+                let pairs = MarkerKnowledge::cmu_41().bone_pairs(take.markers());
+                let rule = if pairs.is_empty() {
+                    BoneRule::Rigid(RigidPairs::default())
+                } else {
+                    BoneRule::Pairs(pairs)
+                };
+                BoneSet::estimate(take, &rule)?
+            }
+        };
+        bones.check(take)?;
+        Ok(bones)
+    }
+}
+
+/// How [`BoleroSc`](crate::BoleroSc) fills.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BoleroScParams {
+    /// The linear dynamical system and how it is learnt.
+    pub model: LdsFillerParams,
+    /// Weight of the bones, finite and 0 or more; 0 leaves the bones out. Default 1e6, as in
+    /// [Li10] §4.
+    ///
+    /// # Units
+    ///
+    /// It multiplies squared differences of squared metres and stands beside squared metres over
+    /// the noise variance in m², so it is measured in m⁻⁴.
+    pub lambda: f64,
+    /// Where the bones come from.
+    pub bones: Bones,
+    /// How the missing markers of a frame are found.
+    pub solver: Solver,
+}
+
+impl Default for BoleroScParams {
+    /// Fills count as observed, as published.
+    fn default() -> Self {
+        let model =
+            LdsFillerParams { e_step: EStep::FilledAsObserved, ..LdsFillerParams::default() };
+        Self { model, lambda: 1e6, bones: Bones::Auto, solver: Solver::default() }
+    }
+}
+
+impl BoleroScParams {
+    pub(crate) fn validate(&self) -> Result<(), FillError> {
+        self.model.validate()?;
+        if self.lambda.is_finite() && self.lambda >= 0.0 {
+            return Ok(());
+        }
+        let (field, value) = ("lambda", self.lambda);
+        Err(FillError::Parameter { field, value, rule: "a finite number from 0" })
+    }
+}

@@ -1,0 +1,6 @@
+//! Integration tests of the soft bone constraints.
+#![allow(missing_docs, clippy::unwrap_used, clippy::float_cmp)]
+
+mod data;
+mod filler;
+mod real;

@@ -1,0 +1,78 @@
+use mocap_core::{BoneRule, BoneSet, CoreError, MarkerKnowledge, Take};
+
+use crate::Edges;
+
+/// What a user may say about any method; a method reads what concerns it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// Where bone lengths come from.
+    pub bones: Bones,
+    /// Marker sets that tell where the body faces; the first that names a back and a front counts.
+    pub known: Vec<MarkerKnowledge>,
+    /// Coordinates to learn in; `None`: the method's own choice.
+    pub coordinates: Option<Coordinates>,
+    /// Hidden dimensions of a dynamical system, at least 1; `None`: 16, or fewer for few markers.
+    pub hidden: Option<usize>,
+    /// Weight of the bone lengths, from 0; `None`: 1e6. Its unit is that of [`bolero_sc`]'s `lambda`.
+    pub lambda: Option<f64>,
+    /// Iterations at most, at least 1; `None`: the method's own number.
+    pub iterations: Option<usize>,
+    /// Seed of a random start.
+    pub seed: u64,
+    /// What becomes of gaps at the start or end of the take, for methods that interpolate.
+    pub edges: Edges,
+}
+
+impl Default for Options {
+    /// Everything from the data, with the built-in marker set.
+    fn default() -> Self {
+        let known = vec![MarkerKnowledge::cmu_41()];
+        Self {
+            bones: Bones::Auto(known.clone()),
+            known,
+            coordinates: None,
+            hidden: None,
+            lambda: None,
+            iterations: None,
+            seed: 0,
+            edges: Edges::default(),
+        }
+    }
+}
+
+/// Where bone lengths come from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Bones {
+    /// The visible samples: the pairs of a known marker set, else pairs that keep their distance.
+    Auto(Vec<MarkerKnowledge>),
+    /// No bones.
+    None,
+    /// These.
+    Given(BoneSet),
+}
+
+impl Bones {
+    /// The bones of a take.
+    ///
+    /// # Errors
+    /// [`CoreError`] for given bones that the take has no markers for.
+    pub fn resolve(&self, take: &Take) -> Result<BoneSet, CoreError> {
+        match self {
+            Self::Auto(known) => BoneSet::estimate(take, &BoneRule::Known(known.clone())),
+            Self::None => Ok(BoneSet::default()),
+            Self::Given(bones) => {
+                bones.check(take)?;
+                Ok(bones.clone())
+            }
+        }
+    }
+}
+
+/// Coordinates in which the motion is learnt.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Coordinates {
+    /// As recorded.
+    World,
+    /// Relative to the body's place and heading.
+    Body,
+}

@@ -1,0 +1,139 @@
+use std::sync::Arc;
+
+use baselines::{CubicSpline, Linear};
+use bolero_sc::{BoleroSc, BoleroScParams};
+use lds_kalman::filler::{self, LdsFiller, LdsFillerParams};
+use mocap_core::{BoneRule, BoneSet, FillError, GapFiller, MarkerKnowledge, MarkerSet};
+use thiserror::Error;
+
+use crate::{Bones, Coordinates, Options};
+
+/// The method to take where the user names none.
+pub const DEFAULT: &str = "bolero-sc";
+
+/// A method of the registry.
+#[derive(Debug, Clone, Copy)]
+pub struct Method {
+    /// What users type.
+    pub id: &'static str,
+    /// One line for a person who has to choose.
+    pub summary: &'static str,
+    /// Names of the [`Options`] that it reads.
+    pub options: &'static [&'static str],
+    build: fn(&Options) -> Result<Box<dyn GapFiller>, FillError>,
+}
+
+/// Every method, simplest first.
+pub const METHODS: &[Method] = &[
+    Method {
+        id: "linear",
+        summary: "straight lines across gaps; for a few frames",
+        options: &["edges"],
+        build: |options| Ok(Box::new(Linear { edges: options.edges })),
+    },
+    Method {
+        id: "spline",
+        summary: "a smooth curve through each marker by itself; for gaps up to 0.2 s, and when all markers are gone",
+        options: &["edges"],
+        build: |options| Ok(Box::new(CubicSpline { edges: options.edges })),
+    },
+    Method {
+        id: "dynammo",
+        summary: "a linear dynamical system as Li et al. published it in 2009; for comparison",
+        options: &["frame", "hidden", "iterations", "seed"],
+        build: |options| dynamical_system(LdsFillerParams::dynammo(), options),
+    },
+    Method {
+        id: "lds",
+        summary: "a linear dynamical system by exact EM; tells how sure it is; needs no bones",
+        options: &["frame", "hidden", "iterations", "seed"],
+        build: |options| dynamical_system(LdsFillerParams::default(), options),
+    },
+    Method {
+        id: "bolero-sc",
+        summary: "a linear dynamical system that keeps bone lengths; for long gaps of several markers",
+        options: &["bones", "lambda", "frame", "hidden", "iterations", "seed"],
+        build: soft_bones,
+    },
+];
+
+/// Why a method cannot be built.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum BuildError {
+    /// No method has this id.
+    #[error("no method is called `{id}`; `mocap methods` lists them: {}", ids())]
+    Unknown {
+        /// The id as given.
+        id: String,
+    },
+    /// An option out of its range.
+    #[error("cannot set up `{id}`")]
+    Options {
+        /// The method.
+        id: &'static str,
+        /// The option, its value and its range.
+        #[source]
+        source: FillError,
+    },
+}
+
+fn ids() -> String {
+    METHODS.iter().map(|method| method.id).collect::<Vec<_>>().join(", ")
+}
+
+/// Builds the method with this id.
+///
+/// # Errors
+/// [`BuildError::Unknown`], and [`BuildError::Options`] for a value out of range.
+pub fn build(id: &str, options: &Options) -> Result<Box<dyn GapFiller>, BuildError> {
+    let method = METHODS.iter().find(|method| method.id == id);
+    let method = method.ok_or_else(|| BuildError::Unknown { id: id.to_owned() })?;
+    (method.build)(options).map_err(|source| BuildError::Options { id: method.id, source })
+}
+
+fn dynamical_system(
+    defaults: LdsFillerParams,
+    options: &Options,
+) -> Result<Box<dyn GapFiller>, FillError> {
+    Ok(Box::new(LdsFiller::new(model(defaults, options))?))
+}
+
+fn soft_bones(options: &Options) -> Result<Box<dyn GapFiller>, FillError> {
+    let defaults = BoleroScParams::default();
+    let bones = match &options.bones {
+        Bones::Auto(known) => bolero_sc::Bones::Estimated(BoneRule::Known(known.clone())),
+        Bones::None => bolero_sc::Bones::Given(BoneSet::default()),
+        Bones::Given(bones) => bolero_sc::Bones::Given(bones.clone()),
+    };
+    Ok(Box::new(BoleroSc::new(BoleroScParams {
+        model: model(defaults.model, options),
+        lambda: options.lambda.unwrap_or(defaults.lambda),
+        bones,
+        ..defaults
+    })?))
+}
+
+fn model(defaults: LdsFillerParams, options: &Options) -> LdsFillerParams {
+    let coordinates = match options.coordinates {
+        None => defaults.coordinates,
+        Some(Coordinates::World) => filler::Coordinates::World,
+        Some(Coordinates::Body) => filler::Coordinates::Body(Arc::new(facing(&options.known))),
+    };
+    LdsFillerParams {
+        hidden: options.hidden.or(defaults.hidden),
+        iterations: options.iterations.unwrap_or(defaults.iterations),
+        seed: options.seed,
+        coordinates,
+        ..defaults
+    }
+}
+
+/// The first marker set that tells where a body faces.
+fn facing(known: &[MarkerKnowledge]) -> MarkerKnowledge {
+    let tells = |set: &&MarkerKnowledge| {
+        let own = MarkerSet::new(set.markers().iter().map(String::as_str));
+        own.is_ok_and(|own| ["back", "front"].iter().all(|role| !set.role(role, &own).is_empty()))
+    };
+    known.iter().find(tells).cloned().unwrap_or_else(MarkerKnowledge::cmu_41)
+}

@@ -1,0 +1,161 @@
+//! The covariance half of the Kalman filter, which depends on the mask but not on the values.
+//!
+//! Consecutive frames with the same pattern of missing entries drive the covariances to a fixed
+//! point. Once it is reached they share one step, so that a long take costs as many covariance
+//! steps as it has transients, not frames.
+
+use crate::{dynamics::Dynamics, kernel};
+
+/// A covariance counts as stationary when no entry changes by more than this times its largest
+/// entry. The change still to come is of the same order as long as the filter forgets, so results
+/// with and without stopping agree to about 1e-12.
+pub(crate) const STATIONARY: f64 = 1e-14;
+
+const BLOCKS: usize = 5;
+
+/// The covariance steps of one forward pass.
+#[derive(Debug, Default)]
+pub(crate) struct Forward {
+    n: usize,
+    blocks: Vec<f64>,
+    log_determinants: Vec<f64>,
+    step_of: Vec<usize>,
+    scratch: [Vec<f64>; 4],
+}
+
+impl Forward {
+    fn block(&self, step: usize, which: usize) -> &[f64] {
+        let size = self.n * self.n;
+        &self.blocks[(step * BLOCKS + which) * size..][..size]
+    }
+
+    /// Covariance of the state given the frames up to this one, `V`.
+    pub(crate) fn filtered(&self, step: usize) -> &[f64] {
+        self.block(step, 0)
+    }
+
+    /// Covariance of the next state given the frames up to this one, `P`.
+    fn predicted(&self, step: usize) -> &[f64] {
+        self.block(step, 1)
+    }
+
+    fn predicted_factor(&self, step: usize) -> &[f64] {
+        self.block(step, 2)
+    }
+
+    /// Transposed smoother gain, `Jᵀ = P⁻¹ F V`.
+    pub(crate) fn gain_transposed(&self, step: usize) -> &[f64] {
+        self.block(step, 3)
+    }
+
+    /// Covariance of the state given the frames up to this one and the next state.
+    pub(crate) fn conditional(&self, step: usize) -> &[f64] {
+        self.block(step, 4)
+    }
+
+    /// `ln det(Σ + G P Gᵀ) − ln det Σ` over the entries the step observes.
+    pub(crate) fn log_determinant(&self, step: usize) -> f64 {
+        self.log_determinants[step]
+    }
+
+    pub(crate) fn step_of(&self) -> &[usize] {
+        &self.step_of
+    }
+
+    /// Runs the recursion over frames whose information matrices are the blocks `pattern_of` of
+    /// `information`; `false` when a covariance is not positive definite.
+    ///
+    /// Implements [Li10] Eq. (15), (16), (18), (20), (22) and (25) in the information form, whose
+    /// size is the hidden dimension.
+    pub(crate) fn run(
+        &mut self,
+        dynamics: &Dynamics,
+        information: &[f64],
+        pattern_of: &[usize],
+        tolerance: f64,
+    ) -> bool {
+        let size = dynamics.n * dynamics.n;
+        self.n = dynamics.n;
+        self.blocks.clear();
+        self.log_determinants.clear();
+        self.step_of.clear();
+        self.scratch.iter_mut().for_each(|s| s.resize(size, 0.0));
+        let mut settled = false;
+        for (t, &pattern) in pattern_of.iter().enumerate() {
+            let previous = self.step_of.last().copied();
+            let same_pattern = t > 0 && pattern_of[t - 1] == pattern;
+            if settled && same_pattern {
+                self.step_of.extend(previous);
+                continue;
+            }
+            let Some(step) = self.push(dynamics, &information[pattern * size..][..size], previous)
+            else {
+                return false;
+            };
+            settled = same_pattern && previous.is_some_and(|p| self.agree(p, step, tolerance));
+            self.step_of.push(step);
+        }
+        true
+    }
+
+    fn agree(&self, a: usize, b: usize, tolerance: f64) -> bool {
+        let (size, change) = kernel::magnitude_and_change(self.filtered(b), self.filtered(a));
+        change <= tolerance * size
+    }
+
+    /// Appends the step that follows `previous`.
+    fn push(
+        &mut self,
+        dynamics: &Dynamics,
+        information: &[f64],
+        previous: Option<usize>,
+    ) -> Option<usize> {
+        let n = self.n;
+        let mut scratch = std::mem::take(&mut self.scratch);
+        let [a, b, c, d] = &mut scratch;
+        match previous {
+            Some(p) => a.copy_from_slice(self.predicted_factor(p)),
+            None => kernel::cholesky(&dynamics.initial_covariance, a, n).then_some(())?,
+        }
+        // With P = L Lᵀ: V = (P⁻¹ + S)⁻¹ = L (I + Lᵀ S L)⁻¹ Lᵀ, whose inner matrix is never worse
+        // conditioned than one plus the signal-to-noise ratio.
+        kernel::multiply(information, a, b, n);
+        kernel::multiply_transposed(a, b, c, n);
+        kernel::symmetrize(c, n);
+        (0..n).for_each(|i| c[i * n + i] += 1.0);
+        kernel::cholesky(c, b, n).then_some(())?;
+        let log_determinant = kernel::log_determinant(b, n);
+        kernel::transpose(a, c, n);
+        kernel::solve_lower(b, c, n, n);
+        kernel::multiply_transposed(c, c, a, n);
+        self.blocks.extend_from_slice(a);
+
+        kernel::multiply(&dynamics.transition, a, b, n);
+        kernel::multiply(b, &dynamics.transition_transposed, c, n);
+        c.iter_mut().zip(&dynamics.state_noise).for_each(|(x, q)| *x += q);
+        kernel::symmetrize(c, n);
+        kernel::cholesky(c, d, n).then_some(())?;
+        self.blocks.extend_from_slice(c);
+        self.blocks.extend_from_slice(d);
+
+        c.copy_from_slice(b);
+        kernel::solve_cholesky(d, c, n, n);
+        self.blocks.extend_from_slice(c);
+        kernel::multiply_transposed(c, b, d, n);
+        d.iter_mut().zip(a.iter()).for_each(|(x, v)| *x = v - *x);
+        kernel::symmetrize(d, n);
+        self.blocks.extend_from_slice(d);
+
+        self.scratch = scratch;
+        self.log_determinants.push(log_determinant);
+        Some(self.log_determinants.len() - 1)
+    }
+
+    /// Covariance of the state of `frame` given the frames before it.
+    pub(crate) fn predicted_at<'a>(&'a self, frame: usize, dynamics: &'a Dynamics) -> &'a [f64] {
+        match frame.checked_sub(1) {
+            Some(before) => self.predicted(self.step_of[before]),
+            None => &dynamics.initial_covariance,
+        }
+    }
+}

@@ -1,0 +1,283 @@
+use std::{
+    path::{Path, PathBuf},
+    time::Instant,
+};
+
+use anyhow::{Context, Result, bail};
+use clap::{Args, ValueEnum};
+use gapfill::{Bones, Coordinates, Edges, Options};
+use mocap_core::{BoneSet, Filled, Refusal, Take};
+use mocap_io::{Edit, Format, MarkerFile, encode_markers, read_bones};
+use mocap_report::{FillSummary, PlotInput, TakeSummary, html_page, render_png, render_svg};
+use serde_json::json;
+use sha2::{Digest, Sha256};
+
+use crate::{
+    files::{OutputArgs, ReadArgs, create_folder},
+    marker_sets::MarkerSetArgs,
+    progress::Progress,
+};
+
+const SIDECAR: &str = ".fill.json";
+
+/// Fill the gaps of a recording; nothing else in the file changes
+///
+/// The filled samples are listed in OUT.fill.json, and marked in a C3D file as the standard says (residual 0, camera mask 0).
+/// Gaps that a method cannot fill stay open and are listed with the reason.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  mocap fill walk.c3d -o filled.c3d
+  mocap fill walk.c3d -o filled.c3d --method spline --max-gap 0.2
+  mocap fill walk.csv -o filled.c3d --rate 120 --report report
+
+Try `mocap methods` for the methods, `mocap occlude` and `mocap score` to test one on your own data.")]
+pub(crate) struct Fill {
+    /// Recording with gaps
+    input: PathBuf,
+    #[command(flatten)]
+    output: OutputArgs,
+    #[command(flatten)]
+    method: MethodArgs,
+    /// Leave gaps open that last longer
+    #[arg(long, value_name = "SECONDS")]
+    max_gap: Option<f64>,
+    /// Threads to use; the result is the same for any number
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
+    /// Folder for a report with plots and tables
+    #[arg(long, value_name = "DIR")]
+    report: Option<PathBuf>,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    read: ReadArgs,
+}
+
+/// Which method, and how.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Method")]
+struct MethodArgs {
+    /// How to fill; see `mocap methods`
+    #[arg(long, value_name = "METHOD", default_value = gapfill::DEFAULT)]
+    method: String,
+    /// Bone lengths: a CSV file (see `mocap bones`), `auto` from the visible samples, or `none`
+    #[arg(long, value_name = "FILE|auto|none", default_value = "auto")]
+    bones: String,
+    /// Coordinates in which the motion is learnt [default: the method's own choice]
+    #[arg(long, value_enum, value_name = "FRAME")]
+    frame: Option<FrameArg>,
+    /// Hidden dimensions of a dynamical system [default: 16, or fewer for few markers]
+    #[arg(long, value_name = "N")]
+    hidden: Option<usize>,
+    /// Weight of the bone lengths [default: 1e6]
+    #[arg(long, value_name = "X")]
+    lambda: Option<f64>,
+    /// Iterations at most
+    #[arg(long, value_name = "N")]
+    iterations: Option<usize>,
+    /// Seed of a random start: the same seed gives the same bits
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    seed: u64,
+    /// What becomes of gaps at the start or end of the take, for methods that interpolate
+    #[arg(long, value_enum, default_value = "refuse")]
+    edges: EdgesArg,
+    #[command(flatten)]
+    sets: MarkerSetArgs,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum FrameArg {
+    /// Where the recording has them
+    World,
+    /// Relative to the body's place and heading
+    Body,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum EdgesArg {
+    /// They stay open
+    Refuse,
+    /// They hold the nearest position
+    Hold,
+}
+
+impl Fill {
+    pub(crate) fn run(self) -> Result<()> {
+        self.check()?;
+        if let Some(threads) = self.threads {
+            rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
+        }
+        let file = self.read.read(&self.input)?;
+        let options = self.method.options(file.take())?;
+        let run = fill(file.take(), &self.method.method, &options, self.json)?;
+        let filled = self.keep_short(run.filled)?;
+        let bytes = self.bytes(&file, &filled)?;
+        self.output.write(&bytes)?;
+
+        let first_frame = file.info().first_frame;
+        let summary = FillSummary::new(&filled, first_frame, run.seconds);
+        let sidecar = self.sidecar(&file, &bytes, &summary)?;
+        self.output.write_beside(SIDECAR, &serde_json::to_vec_pretty(&sidecar)?)?;
+        if let Some(folder) = &self.report {
+            let bones = options.bones.resolve(file.take())?;
+            let title = file_name(&self.input);
+            let take = TakeSummary::new(file.take(), first_frame);
+            report(folder, &title, &take, &filled, &bones, &summary)?;
+        }
+        if self.json {
+            println!("{}", serde_json::to_string(&summary)?);
+        } else {
+            println!("{}", summary.to_text());
+            println!("wrote {}", self.output.output.display());
+        }
+        Ok(())
+    }
+
+    /// Everything that can be refused before any work is done.
+    fn check(&self) -> Result<()> {
+        self.output.check(&[&self.input])?;
+        self.output.check_beside(SIDECAR)?;
+        if self.max_gap.is_some_and(|s| !(s.is_finite() && s > 0.0)) {
+            bail!("--max-gap must be a positive number of seconds");
+        }
+        if self.threads == Some(0) {
+            bail!("--threads must be at least 1");
+        }
+        let format = Format::of(&self.output.output);
+        match format {
+            Some(format) if format.holds_markers() => Ok(()),
+            Some(format) => bail!(
+                "a .{} file holds a skeleton; markers become joint motion by solving, not by filling",
+                format.extension()
+            ),
+            None => bail!(
+                "{}: no format goes by this extension; use .c3d, .trc, .csv or .tsv",
+                self.output.output.display()
+            ),
+        }
+    }
+
+    fn keep_short(&self, filled: Filled) -> Result<Filled> {
+        let Some(limit_s) = self.max_gap else { return Ok(filled) };
+        let rate_hz = filled.take().rate_hz();
+        let long = filled.gaps().into_iter().filter(|gap| gap.seconds(rate_hz) > limit_s);
+        long.collect::<Vec<_>>().into_iter().try_fold(filled, |filled, gap| {
+            let reason = Refusal::TooLong { gap_s: gap.seconds(rate_hz), limit_s };
+            Ok(filled.refuse(gap, reason)?)
+        })
+    }
+
+    fn bytes(&self, file: &MarkerFile, filled: &Filled) -> Result<Vec<u8>> {
+        let info = file.info();
+        match Format::of(&self.output.output) {
+            Some(format) if format != info.format => {
+                Ok(encode_markers(filled.take(), format, info.unit, info.first_frame)?)
+            }
+            _ => Ok(file.patched(&Edit::fills(filled))?),
+        }
+    }
+
+    /// The account of the fill: what went in, what came out, and how.
+    fn sidecar(
+        &self,
+        file: &MarkerFile,
+        output: &[u8],
+        summary: &FillSummary,
+    ) -> Result<serde_json::Value> {
+        let mut object = serde_json::to_value(summary)?;
+        object["program"] = json!(format!("mocap {}", env!("CARGO_PKG_VERSION")));
+        object["input"] = named_hash(&self.input, file.bytes());
+        object["output"] = named_hash(&self.output.output, output);
+        object["options"] = json!({
+            "method": self.method.method, "bones": self.method.bones,
+            "frame": self.method.frame.map(|f| format!("{f:?}").to_lowercase()),
+            "hidden": self.method.hidden, "lambda": self.method.lambda,
+            "iterations": self.method.iterations, "seed": self.method.seed,
+            "edges": format!("{:?}", self.method.edges).to_lowercase(), "max_gap_s": self.max_gap,
+        });
+        Ok(object)
+    }
+}
+
+/// File name and sha256 of the unpacked content.
+fn named_hash(path: &Path, bytes: &[u8]) -> serde_json::Value {
+    json!({"file": file_name(path), "sha256": format!("{:x}", Sha256::digest(bytes))})
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+impl MethodArgs {
+    fn options(&self, take: &Take) -> Result<Options> {
+        let known = self.sets.known()?;
+        let bones = match self.bones.as_str() {
+            "auto" => Bones::Auto(known.clone()),
+            "none" => Bones::None,
+            path => {
+                let named = || format!("cannot use the bones of {path}");
+                let bytes = std::fs::read(path).with_context(named)?;
+                Bones::Given(read_bones(&bytes, take.markers()).with_context(named)?)
+            }
+        };
+        Ok(Options {
+            bones,
+            known,
+            coordinates: self.frame.map(|frame| match frame {
+                FrameArg::World => Coordinates::World,
+                FrameArg::Body => Coordinates::Body,
+            }),
+            hidden: self.hidden,
+            lambda: self.lambda,
+            iterations: self.iterations,
+            seed: self.seed,
+            edges: match self.edges {
+                EdgesArg::Refuse => Edges::Refuse,
+                EdgesArg::Hold => Edges::Hold,
+            },
+        })
+    }
+}
+
+/// A fill and the seconds it took.
+pub(crate) struct Run {
+    pub(crate) filled: Filled,
+    pub(crate) seconds: f64,
+}
+
+/// Fills a take and shows progress.
+pub(crate) fn fill(take: &Take, method: &str, options: &Options, quiet: bool) -> Result<Run> {
+    let filler = gapfill::build(method, options)?;
+    let progress = Progress::new(method, quiet);
+    let start = Instant::now();
+    let filled = filler.fill_observed(take, &mut |report| progress.show(report));
+    let seconds = start.elapsed().as_secs_f64();
+    progress.finish();
+    Ok(Run { filled: filled.with_context(|| format!("cannot fill with {method}"))?, seconds })
+}
+
+/// Writes the report's files into a folder: a page to read, and its parts to use.
+fn report(
+    folder: &Path,
+    title: &str,
+    take: &TakeSummary,
+    filled: &Filled,
+    bones: &BoneSet,
+    summary: &FillSummary,
+) -> Result<()> {
+    create_folder(folder)?;
+    let plot = PlotInput::fill(title, filled, bones);
+    let figure = render_svg(&plot)?;
+    let page = html_page(title, take, Some(summary), Some(&figure));
+    for (name, bytes) in [
+        ("index.html", page.into_bytes()),
+        ("fill.svg", figure),
+        ("fill.png", render_png(&plot)?),
+        ("gaps.csv", summary.gaps_csv().into_bytes()),
+        ("fill.json", serde_json::to_vec_pretty(summary)?),
+    ] {
+        mocap_io::write_atomic(&folder.join(name), &bytes, true)?;
+    }
+    Ok(())
+}

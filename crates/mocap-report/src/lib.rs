@@ -1,0 +1,12 @@
+#![doc = include_str!("../README.md")]
+
+mod error;
+mod figure;
+mod html;
+mod summary;
+mod table;
+
+pub use error::ReportError;
+pub use figure::{FigureFormat, MAX_FIGURE_MARKERS, PlotInput, plot_take, render_png, render_svg};
+pub use html::html_page;
+pub use summary::{FillSummary, GapFill, GapSummary, MarkerSummary, TakeSummary};

@@ -1,0 +1,34 @@
+//! Motion generators: pure functions from time to posture, drawn once per take.
+
+mod gait;
+mod jump;
+mod throw;
+mod track;
+
+use crate::{Activity, body::Body, dice::Dice, rig::Posture};
+
+/// A motion that can be asked for any moment of the take.
+pub(crate) trait Choreography {
+    /// The posture at a time.
+    ///
+    /// # Units
+    /// Seconds from the first frame; a little before it, too.
+    fn posture(&self, body: &Body, time: f64) -> Posture;
+}
+
+/// Time before the first frame that every motion is defined for, in seconds.
+pub(crate) const LEAD_S: f64 = 1.0;
+
+pub(crate) fn choreography(
+    activity: Activity,
+    body: &Body,
+    seconds: f64,
+    dice: &mut Dice,
+) -> Box<dyn Choreography> {
+    match activity {
+        Activity::Walk => Box::new(gait::Gait::new(&gait::WALK, body, seconds, dice)),
+        Activity::Run => Box::new(gait::Gait::new(&gait::RUN, body, seconds, dice)),
+        Activity::Jump => Box::new(jump::Jump::new(body, seconds, dice)),
+        Activity::Throw => Box::new(throw::Throw::new(body, seconds, dice)),
+    }
+}

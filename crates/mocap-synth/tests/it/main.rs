@@ -1,0 +1,19 @@
+//! Tests of the synthetic takes.
+// Unwrapping is how a test fails; exact comparison is how determinism is tested.
+#![allow(clippy::unwrap_used, clippy::float_cmp)]
+
+mod params;
+mod realism;
+mod repeat;
+mod truth;
+
+use mocap_synth::{Activity, Synth, SynthParams, SyntheticTake};
+
+fn record(params: SynthParams) -> SyntheticTake {
+    Synth::new(params).unwrap().take().unwrap()
+}
+
+/// Ten seconds at 120 Hz.
+fn params(motion: Activity, seed: u64) -> SynthParams {
+    SynthParams { motion, seed, frames: 1200, ..SynthParams::default() }
+}
