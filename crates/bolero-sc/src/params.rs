@@ -1,4 +1,9 @@
-use lds_kalman::{EStep, filler::LdsFillerParams};
+use std::sync::Arc;
+
+use lds_kalman::{
+    EStep,
+    filler::{Coordinates, LdsFillerParams},
+};
 use mocap_core::{BoneRule, BoneSet, FillError, MarkerKnowledge, RigidPairs, Take};
 
 use crate::solver::Solver;
@@ -61,15 +66,29 @@ pub struct BoleroScParams {
 }
 
 impl Default for BoleroScParams {
-    /// Fills count as observed, as published.
+    /// Exact EM from the data's own subspace, and the weight of [Li10].
     fn default() -> Self {
-        let model =
-            LdsFillerParams { e_step: EStep::FilledAsObserved, ..LdsFillerParams::default() };
-        Self { model, lambda: 1e6, bones: Bones::Auto, solver: Solver::default() }
+        Self {
+            model: LdsFillerParams::default(),
+            lambda: 1e6,
+            bones: Bones::Auto,
+            solver: Solver::default(),
+        }
     }
 }
 
 impl BoleroScParams {
+    /// The settings of [Li10] §4: fills count as observed, a random start, body-local coordinates
+    /// with their own origin. The solver is still the converged one, and the bones and the body
+    /// frame are those of the visible samples.
+    #[must_use]
+    pub fn published() -> Self {
+        let coordinates = Coordinates::Body(Arc::new(MarkerKnowledge::cmu_41()));
+        let e_step = EStep::FilledAsObserved;
+        let model = LdsFillerParams { e_step, coordinates, ..LdsFillerParams::dynammo() };
+        Self { model, ..Self::default() }
+    }
+
     pub(crate) fn validate(&self) -> Result<(), FillError> {
         self.model.validate()?;
         if self.lambda.is_finite() && self.lambda >= 0.0 {

@@ -68,23 +68,25 @@ impl Problem<'_> {
         }
     }
 
-    /// The Gauss–Newton approximation of the Hessian, `(n, n)` row by row.
-    pub(crate) fn normal_matrix(&self, y: &[f64], out: &mut [f64]) {
+    /// The Hessian, `(n, n)` row by row; indefinite where a bone is much too short.
+    pub(crate) fn hessian(&self, y: &[f64], out: &mut [f64]) {
         let n = self.len();
         out.fill(0.0);
         (0..n).for_each(|i| out[i * n + i] = self.precision[i]);
         for stick in self.sticks {
-            let (apart, _) = stretch(stick, y);
+            let (apart, excess) = stretch(stick, y);
             for (row_sign, row_end) in [1.0, -1.0].into_iter().zip(stick.ends) {
                 for (column_sign, column_end) in [1.0, -1.0].into_iter().zip(stick.ends) {
                     let (End::Unknown(r), End::Unknown(c)) = (row_end, column_end) else {
                         continue;
                     };
-                    let factor = 4.0 * self.lambda * row_sign * column_sign;
-                    for (a, x) in apart.iter().enumerate() {
-                        for (b, y) in apart.iter().enumerate() {
-                            out[(3 * r + a) * n + 3 * c + b] += factor * x * y;
+                    let factor = 2.0 * self.lambda * row_sign * column_sign;
+                    for a in 0..3 {
+                        let row = &mut out[(3 * r + a) * n + 3 * c..][..3];
+                        for (b, h) in row.iter_mut().enumerate() {
+                            *h += factor * 2.0 * apart[a] * apart[b];
                         }
+                        row[a] += factor * excess;
                     }
                 }
             }
@@ -158,30 +160,49 @@ pub(crate) mod tests {
         })
     }
 
+    /// The slope at zero of a polynomial of degree four, by a formula that is exact for those.
+    fn slope(at: impl Fn(f64) -> f64, step: f64) -> f64 {
+        (8.0 * (at(step) - at(-step)) - (at(2.0 * step) - at(-2.0 * step))) / (12.0 * step)
+    }
+
     proptest! {
         #[test]
-        fn the_gradient_is_that_of_the_objective(
+        fn gradient_and_hessian_are_the_slopes_of_what_they_derive(
             frame in frames(),
             shift in prop::collection::vec(-0.3..0.3, 15),
         ) {
             let problem = frame.problem();
             let y: Vec<f64> = frame.prediction.iter().zip(&shift).map(|(c, s)| c + s).collect();
-            let mut gradient = vec![0.0; y.len()];
+            let n = y.len();
+            let (mut gradient, mut hessian) = (vec![0.0; n], vec![0.0; n * n]);
             problem.gradient(&y, &mut gradient);
-            let scale = gradient.iter().fold(1.0_f64, |a, g| a.max(g.abs()));
-            for i in 0..y.len() {
-                let step = 1e-5;
-                let at = |h: f64| {
-                    let mut moved = y.clone();
-                    moved[i] += h;
-                    problem.objective(&moved)
-                };
-                // The five-point formula is exact for the quartic that the objective is along a
-                // line; what is left is the rounding of the objective over the step.
-                let slope = (8.0 * (at(step) - at(-step)) - (at(2.0 * step) - at(-2.0 * step)))
-                    / (12.0 * step);
-                let rounding = 4.0 * f64::EPSILON * problem.objective(&y).abs() / step;
-                prop_assert!((slope - gradient[i]).abs() <= 1e-8 * scale + 8.0 * rounding);
+            problem.hessian(&y, &mut hessian);
+            let moved = |i: usize, by: f64| {
+                let mut y = y.clone();
+                y[i] += by;
+                y
+            };
+            // What is left is the rounding of the function over the step.
+            let step = 1e-2;
+            let tolerance = |value: f64| 64.0 * f64::EPSILON * (1.0 + value.abs()) / step;
+            let largest = (0..n)
+                .flat_map(|i| [-2.0, 2.0].map(|by| problem.objective(&moved(i, by * step))))
+                .fold(0.0, f64::max);
+            let size = gradient.iter().fold(largest, |a, g| a.max(g.abs()));
+            for i in 0..n {
+                let by_value = slope(|h| problem.objective(&moved(i, h)), step);
+                prop_assert!((by_value - gradient[i]).abs() <= tolerance(size));
+                for j in 0..n {
+                    let by_gradient = slope(
+                        |h| {
+                            let mut gradient = vec![0.0; n];
+                            problem.gradient(&moved(i, h), &mut gradient);
+                            gradient[j]
+                        },
+                        step,
+                    );
+                    prop_assert!((by_gradient - hessian[i * n + j]).abs() <= tolerance(size));
+                }
             }
         }
     }

@@ -50,7 +50,7 @@ fn em_iteration(criterion: &mut Criterion) {
                         let clock = std::time::Instant::now();
                         black_box(fit(&observations, e_step, 1));
                         let short = clock.elapsed();
-                        total += long.saturating_sub(short) / ITERATIONS as u32;
+                        total += long.saturating_sub(short).div_f64(ITERATIONS as f64);
                     }
                     total
                 });

@@ -19,8 +19,11 @@ const DEFAULT_HIDDEN: usize = 16;
 /// The coordinates in which a model is learnt.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum Coordinates {
-    /// As recorded.
+    /// Relative to the body where a take shows the reference markers of the CMU marker set, else
+    /// as recorded.
     #[default]
+    Auto,
+    /// As recorded.
     World,
     /// Relative to the body's place and heading, found from the visible reference markers that
     /// this marker-set knowledge names.
@@ -29,11 +32,21 @@ pub enum Coordinates {
 
 impl Coordinates {
     fn frame(&self, take: &Take) -> Result<Option<BodyFrame>, FillError> {
-        let Self::Body(known) = self else { return Ok(None) };
-        let markers = BodyMarkers::find(take, known).ok_or(CoreError::NoBodyFrame)?;
-        let up = UpAxis::guess(take, known).ok_or(FillError::NothingObserved)?;
-        Ok(Some(BodyFrame::estimate(take, &markers, up)?))
+        match self {
+            Self::World => Ok(None),
+            Self::Body(known) => body_frame(take, known).map(Some),
+            Self::Auto => match body_frame(take, &MarkerKnowledge::cmu_41()) {
+                Err(FillError::Core(CoreError::NoBodyFrame)) => Ok(None),
+                found => found.map(Some),
+            },
+        }
     }
+}
+
+fn body_frame(take: &Take, known: &MarkerKnowledge) -> Result<BodyFrame, FillError> {
+    let markers = BodyMarkers::find(take, known).ok_or(CoreError::NoBodyFrame)?;
+    let up = UpAxis::guess(take, known).ok_or(FillError::NothingObserved)?;
+    Ok(BodyFrame::estimate(take, &markers, up)?)
 }
 
 /// Where the origin lies while a model is learnt. A linear system has no constant term: it spends
@@ -84,7 +97,7 @@ impl Default for LdsFillerParams {
             e_step: EStep::Exact,
             structure: NoiseStructure::default(),
             origin: Origin::Centroid,
-            coordinates: Coordinates::World,
+            coordinates: Coordinates::Auto,
         }
     }
 }

@@ -118,7 +118,9 @@ pub(crate) fn solve_lower(factor: &[f64], b: &mut [f64], n: usize, columns: usiz
             add_scaled(row, -factor[i * n + k], &done[k * columns..(k + 1) * columns]);
         }
         let pivot = factor[i * n + i];
-        row.iter_mut().for_each(|x| *x /= pivot);
+        for x in row {
+            *x /= pivot;
+        }
     }
 }
 
@@ -132,7 +134,9 @@ fn solve_upper(factor: &[f64], b: &mut [f64], n: usize, columns: usize) {
             add_scaled(row, -factor[k * n + i], &done[from..from + columns]);
         }
         let pivot = factor[i * n + i];
-        row.iter_mut().for_each(|x| *x /= pivot);
+        for x in row {
+            *x /= pivot;
+        }
     }
 }
 

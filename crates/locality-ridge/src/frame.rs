@@ -97,7 +97,7 @@ fn centroid(points: &[[f64; 3]]) -> [f64; 3] {
     scale(1.0 / points.len().max(1) as f64, sum)
 }
 
-/// The rotation `R` that makes Σ q · R p largest, given `covariance[a][b]` = Σ pₐ q_b: the dominant
+/// The rotation `R` that makes Σ q · R p largest, given the sums of `p[a] · q[b]`: the dominant
 /// eigenvector of the matrix of sums of products in [Horn87].
 fn best_rotation(covariance: &[[f64; 3]; 3]) -> Rotation {
     let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = *covariance;

@@ -196,12 +196,14 @@ impl Path {
     }
 }
 
-/// 1 at the joint, 0 from `blend` frames on and at the far end of the segment.
+/// 1 at the joint, 0 from `blend` frames on and at the far end of the segment; flat at both ends, so
+/// that the path has no kink there.
 fn fade(distance: usize, farthest: usize, blend: f64) -> f64 {
     if distance == 0 {
         return 1.0;
     }
-    (1.0 - distance as f64 / blend.min(farthest as f64)).max(0.0)
+    let rest = (1.0 - distance as f64 / blend.min(farthest as f64)).max(0.0);
+    rest * rest * (3.0 - 2.0 * rest)
 }
 
 /// A border error frame by frame, turned with the local frames of the segments it passes.
@@ -254,18 +256,17 @@ fn bridge_holes(places: &[Option<[f64; 3]>], longest: f64) -> Option<Vec<[f64; 3
     let known: Vec<usize> = (0..places.len()).filter(|&i| places[i].is_some()).collect();
     let mut whole = Vec::with_capacity(places.len());
     for (i, place) in places.iter().enumerate() {
+        if let Some(place) = place {
+            whole.push(*place);
+            continue;
+        }
         let after = known.partition_point(|&k| k < i);
-        whole.push(match place {
-            Some(place) => *place,
-            None => {
-                let (s, e) = (known[after.checked_sub(1)?], *known.get(after)?);
-                if (e - s - 1) as f64 > longest {
-                    return None;
-                }
-                let (p, q) = (places[s]?, places[e]?);
-                add(p, scale((i - s) as f64 / (e - s) as f64, sub(q, p)))
-            }
-        });
+        let (s, e) = (known[after.checked_sub(1)?], *known.get(after)?);
+        if (e - s - 1) as f64 > longest {
+            return None;
+        }
+        let (p, q) = (places[s]?, places[e]?);
+        whole.push(add(p, scale((i - s) as f64 / (e - s) as f64, sub(q, p))));
     }
     Some(whole)
 }

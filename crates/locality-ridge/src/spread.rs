@@ -79,7 +79,8 @@ mod tests {
     fn independent_errors_add() {
         let errors: Vec<_> = (0..4000_u32)
             .map(|t| {
-                let bits = t.wrapping_mul(2_654_435_761);
+                let bits = t.wrapping_mul(0x9E37_79B1);
+                let bits = (bits ^ bits >> 15).wrapping_mul(0x85EB_CA6B);
                 Some([if bits & 0x8000 == 0 { 0.001 } else { -0.001 }, 0.0, 0.0])
             })
             .collect();

@@ -1,4 +1,5 @@
 use std::{
+    fmt::Write,
     path::{Path, PathBuf},
     time::Instant,
 };
@@ -39,7 +40,7 @@ pub(crate) struct Fill {
     #[command(flatten)]
     method: MethodArgs,
     /// Leave gaps open that last longer
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     max_gap: Option<f64>,
     /// Threads to use; the result is the same for any number
     #[arg(long, value_name = "N")]
@@ -71,7 +72,7 @@ struct MethodArgs {
     #[arg(long, value_name = "N")]
     hidden: Option<usize>,
     /// Weight of the bone lengths [default: 1e6]
-    #[arg(long, value_name = "X")]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
     lambda: Option<f64>,
     /// Iterations at most
     #[arg(long, value_name = "N")]
@@ -202,7 +203,14 @@ impl Fill {
 
 /// File name and sha256 of the unpacked content.
 fn named_hash(path: &Path, bytes: &[u8]) -> serde_json::Value {
-    json!({"file": file_name(path), "sha256": format!("{:x}", Sha256::digest(bytes))})
+    json!({"file": file_name(path), "sha256": hex(&Sha256::digest(bytes))})
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::new(), |mut hex, byte| {
+        let _ = write!(hex, "{byte:02x}");
+        hex
+    })
 }
 
 fn file_name(path: &Path) -> String {

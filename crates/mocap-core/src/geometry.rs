@@ -2,42 +2,49 @@
 
 /// `p − q`.
 #[must_use]
+#[inline]
 pub fn sub(p: [f64; 3], q: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|a| p[a] - q[a])
 }
 
 /// `p + q`.
 #[must_use]
+#[inline]
 pub fn add(p: [f64; 3], q: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|a| p[a] + q[a])
 }
 
 /// `s · p`.
 #[must_use]
+#[inline]
 pub fn scale(s: f64, p: [f64; 3]) -> [f64; 3] {
     p.map(|c| s * c)
 }
 
 /// Inner product.
 #[must_use]
+#[inline]
 pub fn dot(p: [f64; 3], q: [f64; 3]) -> f64 {
     p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
 }
 
 /// Cross product.
 #[must_use]
+#[inline]
 pub fn cross(p: [f64; 3], q: [f64; 3]) -> [f64; 3] {
     [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]
 }
 
 /// Euclidean length.
 #[must_use]
+#[inline]
 pub fn norm(p: [f64; 3]) -> f64 {
     dot(p, p).sqrt()
 }
 
 /// Euclidean distance.
 #[must_use]
+#[inline]
 pub fn distance(p: [f64; 3], q: [f64; 3]) -> f64 {
     norm(sub(p, q))
 }
@@ -77,12 +84,14 @@ impl Rotation {
 
     /// The unit quaternion as `(w, [x, y, z])`.
     #[must_use]
+    #[inline]
     pub fn quaternion(self) -> (f64, [f64; 3]) {
         (self.w, self.v)
     }
 
     /// The rotation that applies `other` first and `self` second.
     #[must_use]
+    #[inline]
     pub fn after(self, other: Self) -> Self {
         let w = self.w * other.w - dot(self.v, other.v);
         let v = add(add(scale(self.w, other.v), scale(other.w, self.v)), cross(self.v, other.v));
@@ -91,12 +100,14 @@ impl Rotation {
 
     /// The rotation that undoes this one.
     #[must_use]
+    #[inline]
     pub fn inverse(self) -> Self {
         Self { w: self.w, v: scale(-1.0, self.v) }
     }
 
     /// Rotates a vector.
     #[must_use]
+    #[inline]
     pub fn apply(self, p: [f64; 3]) -> [f64; 3] {
         let t = scale(2.0, cross(self.v, p));
         add(add(p, scale(self.w, t)), cross(self.v, t))
@@ -122,12 +133,14 @@ pub struct RigidTransform {
 impl RigidTransform {
     /// Moves a point.
     #[must_use]
+    #[inline]
     pub fn apply(&self, p: [f64; 3]) -> [f64; 3] {
         add(self.rotation.apply(p), self.translation)
     }
 
     /// Moves a point back.
     #[must_use]
+    #[inline]
     pub fn undo(&self, p: [f64; 3]) -> [f64; 3] {
         self.rotation.inverse().apply(sub(p, self.translation))
     }

@@ -2,7 +2,8 @@
 //!
 //! - `dump_c3d points FILE OUT` writes the points of FILE as raw numbers: frames and points as little-endian `u64`,
 //!   then per sample x, y, z as little-endian `f64` in file units, then per sample one byte with its state (0 present,
-//!   1 negative residual, 2 not finite, 3 exact zero). Prints one line about the file, and one per note.
+//!   1 negative residual, 2 not finite, 3 exact zero), then analog samples and channels as `u64` and the analog values
+//!   as `f64`, sample after sample. Prints one line about the file, and one per note.
 //! - `dump_c3d patch FILE OUT` writes FILE with ten samples of its first point filled and one made missing.
 //! - `dump_c3d make FOLDER` writes new files in every storage, with many points and with many frames.
 #![expect(clippy::print_stdout, reason = "a command line tool")]
@@ -34,6 +35,10 @@ fn points(input: &Path, output: &Path) -> Result<(), Box<dyn Error>> {
     out.extend((data.points as u64).to_le_bytes());
     out.extend(data.xyz.iter().flatten().flat_map(|&value| f64::from(value).to_le_bytes()));
     out.extend(data.states.iter().map(|&state| state as u8));
+    let analog = file.decode_analog();
+    out.extend((analog.samples as u64).to_le_bytes());
+    out.extend((analog.channels as u64).to_le_bytes());
+    out.extend(analog.values.iter().flat_map(|&value| f64::from(value).to_le_bytes()));
     fs::write(output, out)?;
     let (processor, storage) = (file.processor(), file.storage());
     let (frames, points, channels) = (data.frames, data.points, file.analog().channels);

@@ -60,6 +60,14 @@ impl<'a> PlotInput<'a> {
         Self { measured: input.observed(), ..Self::take(title, filled, bones) }
     }
 
+    /// What a marker is called in the figure: its bare name where all markers are of one subject.
+    fn name(&self, marker: usize) -> &str {
+        let markers = self.take.markers();
+        let (subject, bare) = markers.split(marker);
+        let one_subject = (0..markers.len()).all(|m| markers.split(m).0 == subject);
+        if one_subject && !bare.trim().is_empty() { bare } else { markers.name(marker) }
+    }
+
     fn check(&self) -> Result<(), ReportError> {
         self.check_size("the mask of measured cells", self.measured)?;
         if let Some(truth) = self.truth {

@@ -54,7 +54,7 @@ pub(crate) struct Foot {
     pub(crate) heel: f64,
 }
 
-/// Vertical lengths of the template from the floor to the crown, in metres; after the proportions
+/// Vertical lengths of the template from the floor to the crown, in metres; close to the proportions
 /// of [Win09] Fig. 4.1.
 const COLUMN_M: [f64; 10] = [0.079, 0.427, 0.425, 0.040, 0.090, 0.130, 0.130, 0.190, 0.100, 0.139];
 

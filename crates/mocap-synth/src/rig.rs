@@ -135,8 +135,8 @@ fn stand(
 /// Keeps the leg between a deep squat and nearly straight. Near its full length it yields softly,
 /// so that the knee never snaps.
 fn bounded_reach(distance: f64, leg: f64) -> f64 {
-    const SOFT: f64 = 0.965;
-    const FULL: f64 = 0.997;
+    const SOFT: f64 = 0.975;
+    const FULL: f64 = 0.999;
     const SQUAT: f64 = 0.4;
     let share = distance / leg;
     let room = FULL - SOFT;

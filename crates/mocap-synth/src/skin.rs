@@ -6,8 +6,9 @@ use crate::math::TAU;
 /// `s″ + 2ζω s′ + ω² s = −g x″`, so that at slow motion it grows with the acceleration, `s ≈ −g x″/ω²`.
 /// Sampled by the bilinear transform, which is stable at every rate.
 pub(crate) struct Tissue {
-    /// Weights of the last three places and the last two displacements.
-    places: [f64; 3],
+    /// Weight of the places' second difference.
+    high: f64,
+    /// Weights of the last two displacements.
     displacements: [f64; 2],
 }
 
@@ -29,9 +30,8 @@ impl Tissue {
         let omega = TAU * NATURAL_HZ;
         let k = 2.0 * rate_hz;
         let norm = k * k + 2.0 * DAMPING * omega * k + omega * omega;
-        let high = k * k / norm;
         Self {
-            places: [-high, 2.0 * high, -high],
+            high: k * k / norm,
             displacements: [
                 -(2.0 * omega * omega - 2.0 * k * k) / norm,
                 -(k * k - 2.0 * DAMPING * omega * k + omega * omega) / norm,
@@ -43,12 +43,11 @@ impl Tissue {
     pub(crate) fn shake(&self, memory: &mut Memory, place: [f64; 3], slack: f64) -> [f64; 3] {
         let [p1, p2] = memory.places;
         let [s1, s2] = memory.displacements;
-        let [b0, b1, b2] = self.places;
         let [a1, a2] = self.displacements;
-        debug_assert!((b0 + b1 + b2).abs() < 1e-12);
         // Relative to the last place, so that distance from the origin costs no digits.
         let swing: [f64; 3] = std::array::from_fn(|a| {
-            b0 * (place[a] - p1[a]) + b2 * (p2[a] - p1[a]) + a1 * s1[a] + a2 * s2[a]
+            let bend = (p1[a] - place[a]) + (p1[a] - p2[a]);
+            self.high * bend + a1 * s1[a] + a2 * s2[a]
         });
         memory.places = [place, p1];
         memory.displacements = [swing, s1];

@@ -1,8 +1,8 @@
 use std::ops::ControlFlow;
 
 use mocap_core::{
-    CellState, FillError, Filled, GapFiller, Holdout, Mask, Refusal, RigidTransform, Rotation, Take,
-    Termination,
+    CellState, FillError, Filled, GapFiller, Holdout, Mask, Refusal, RigidTransform, Rotation,
+    Take, Termination,
 };
 
 use crate::takes::{articulated_take, with_gaps};
@@ -23,7 +23,7 @@ const SEED: u64 = 20;
 /// # Panics
 /// With the broken rule, if there is one.
 pub fn conformance(filler: &dyn GapFiller, claims: &Claims) {
-    let holdout = with_gaps(&articulated_take(120, SEED), SEED, 4, 3..12);
+    let holdout = with_gaps(articulated_take(120, SEED), SEED, 4, 3..=11);
     let filled = fill(filler, holdout.visible());
     check_observed(holdout.visible(), &filled);
     check_accounted_for(&filled);
@@ -81,10 +81,9 @@ fn check_identity(filler: &dyn GapFiller, complete: &Take) {
 
 fn check_never_seen(filler: &dyn GapFiller, complete: &Take) {
     let ghost = complete.marker_count() - 1;
-    let hidden =
-        Mask::from_fn(complete.frames(), complete.marker_count(), |t, m| {
-            m == ghost || (m == 0 && (40..50).contains(&t))
-        });
+    let hidden = Mask::from_fn(complete.frames(), complete.marker_count(), |t, m| {
+        m == ghost || (m == 0 && (40..50).contains(&t))
+    });
     let filled = fill(filler, &visible(complete, &hidden));
     for t in 0..complete.frames() {
         assert_eq!(filled.state(t, ghost), CellState::Missing, "a never-seen marker was filled");
@@ -131,19 +130,13 @@ fn check_stops(filler: &dyn GapFiller, input: &Take) {
     }
 }
 
-fn check_permutation(
-    filler: &dyn GapFiller,
-    holdout: &Holdout,
-    filled: &Filled,
-    tolerance_m: f64,
-) {
+fn check_permutation(filler: &dyn GapFiller, holdout: &Holdout, filled: &Filled, tolerance_m: f64) {
     let markers = holdout.visible().marker_count();
     let order: Vec<usize> = (0..markers).rev().collect();
     let Ok(permuted) = holdout.visible().select(&order) else { panic!("no permutation") };
     let other = fill(filler, &permuted);
-    let difference = largest_difference(filled.take(), |t, m| {
-        other.take().position(t, markers - 1 - m)
-    });
+    let difference =
+        largest_difference(filled.take(), |t, m| other.take().position(t, markers - 1 - m));
     assert!(difference <= tolerance_m, "another order of markers moves a fill by {difference} m");
 }
 
@@ -160,10 +153,7 @@ fn check_rigid_motion(filler: &dyn GapFiller, input: &Take, filled: &Filled, tol
     assert!(difference <= tolerance_m, "a rigid motion moves a fill by {difference} m");
 }
 
-fn largest_difference(
-    take: &Take,
-    other: impl Fn(usize, usize) -> Option<[f64; 3]>,
-) -> f64 {
+fn largest_difference(take: &Take, other: impl Fn(usize, usize) -> Option<[f64; 3]>) -> f64 {
     let mut largest = 0.0_f64;
     for (t, m) in take.observed().iter() {
         let (Some(p), Some(q)) = (take.position(t, m), other(t, m)) else {

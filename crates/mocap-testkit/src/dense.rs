@@ -88,16 +88,10 @@ impl DenseLds {
         let h = self.transition.nrows();
         let states = frames * h;
         let (mean, covariance) = self.joint(frames);
-        let observed: Vec<usize> = mask
-            .iter()
-            .enumerate()
-            .filter_map(|(i, &seen)| seen.then_some(states + i))
-            .collect();
-        let data: Array1<f64> = values
-            .iter()
-            .zip(mask)
-            .filter_map(|(&x, &seen)| seen.then_some(x))
-            .collect();
+        let observed: Vec<usize> =
+            mask.iter().enumerate().filter_map(|(i, &seen)| seen.then_some(states + i)).collect();
+        let data: Array1<f64> =
+            values.iter().zip(mask).filter_map(|(&x, &seen)| seen.then_some(x)).collect();
         let prior = mean.select(Axis(0), &observed);
         let cross = covariance.select(Axis(1), &observed);
         let seen = cross.select(Axis(0), &observed);

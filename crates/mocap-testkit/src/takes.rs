@@ -59,12 +59,8 @@ pub fn rigid_take(markers: usize, frames: usize, seed: u64) -> Take {
 pub fn articulated_take(frames: usize, seed: u64) -> Take {
     const NOISE_M: f64 = 0.000_1;
     // Along −z from the joint that carries the segment; never in one plane.
-    const SEGMENT: [[f64; 3]; 4] = [
-        [0.05, 0.04, -0.05],
-        [-0.05, 0.03, -0.15],
-        [0.04, -0.05, -0.28],
-        [-0.03, -0.04, -0.40],
-    ];
+    const SEGMENT: [[f64; 3]; 4] =
+        [[0.05, 0.04, -0.05], [-0.05, 0.03, -0.15], [0.04, -0.05, -0.28], [-0.03, -0.04, -0.40]];
     const JOINT: [f64; 3] = [0.0, 0.0, -0.45];
     let mut dice = Dice::new(seed);
     let path = [0; 3].map(|_| Smooth::new(&mut dice, 0.4));
@@ -111,10 +107,10 @@ pub fn with_gaps(take: Take, seed: u64, gaps: usize, lengths: RangeInclusive<usi
             let marker = dice.below(markers);
             let span = (lengths.end() - lengths.start()).saturating_add(1);
             let length = lengths.start() + dice.below(span);
-            let first = usize::from(frames > length + 1);
-            let room = frames.saturating_sub(length + first);
+            let first = usize::from(frames > length.saturating_add(1));
+            let room = frames.saturating_sub(length.saturating_add(first));
             let start = first + dice.below(room.max(1));
-            for frame in start..frames.min(start + length) {
+            for frame in start..frames.min(start.saturating_add(length)) {
                 hidden.insert(frame, marker).expect("the cell lies inside the take");
             }
         }

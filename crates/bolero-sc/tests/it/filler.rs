@@ -44,10 +44,14 @@ fn worst_bone(truth: &Take, filled: &Filled, frames: std::ops::Range<usize>) -> 
 fn bones_keep_their_length_where_the_plain_system_stretches_them() {
     let truth = articulated_take(200, 9);
     let take = with_gap(&truth, 60..140);
-    let plain = filler(BoleroScParams { lambda: 0.0, ..BoleroScParams::default() });
-    let plain = worst_bone(&truth, &plain.fill(&take).unwrap(), 60..140);
-    let soft = worst_bone(&truth, &BoleroSc::default().fill(&take).unwrap(), 60..140);
-    assert!(soft < 0.01 && soft < 0.2 * plain, "soft {soft} m, plain {plain} m");
+    let worst = |lambda| {
+        let filler = filler(BoleroScParams { lambda, ..BoleroScParams::default() });
+        worst_bone(&truth, &filler.fill(&take).unwrap(), 60..140)
+    };
+    // The noise of this take is 0.1 mm, so that a prediction weighs 1e8 m⁻²; bones of 0.1 m count
+    // for more than that only with a weight well above 1e10 m⁻⁴.
+    let (plain, soft) = (worst(0.0), worst(1e12));
+    assert!(soft < 0.005 && soft < 0.1 * plain, "soft {soft} m, plain {plain} m");
 }
 
 #[test]
@@ -71,7 +75,7 @@ fn the_published_descent_comes_close_to_the_converged_minimum() {
     let fill = |solver| {
         filler(BoleroScParams { solver, ..BoleroScParams::default() }).fill(&take).unwrap()
     };
-    let exact = fill(Solver::LevenbergMarquardt);
+    let exact = fill(Solver::DampedNewton);
     let slow = fill(Solver::AdaptiveGradient { evaluations: 5000 });
     let apart = (40..80)
         .flat_map(|t| [2, 3].map(|m| (t, m)))

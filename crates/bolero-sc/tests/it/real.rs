@@ -1,13 +1,11 @@
 //! Reconstruction of the paper's motions.
 
-use std::sync::Arc;
-
 use bolero_sc::{BoleroSc, BoleroScParams, Bones};
 use lds_kalman::{
     EStep,
-    filler::{Coordinates, LdsFiller, LdsFillerParams},
+    filler::{LdsFiller, LdsFillerParams},
 };
-use mocap_core::{GapFiller, Holdout, MarkerKnowledge};
+use mocap_core::{GapFiller, Holdout};
 
 use crate::data::{hide, motion, mse, oracle_bones};
 
@@ -19,23 +17,12 @@ fn elbow_and_forearm() -> Option<Holdout> {
     Some(hide(motion("132_43")?, &["RELB", "RFRM"], 100, 500))
 }
 
-/// The settings of the paper: body-local coordinates, random start, bones of the whole motion.
-fn published(holdout: &Holdout, iterations: usize) -> BoleroScParams {
-    let mut params = BoleroScParams::default();
-    params.model = published_model(EStep::FilledAsObserved, iterations);
+/// The settings of the paper, with the lengths of the whole motion.
+fn published(holdout: &Holdout, iterations: usize) -> BoleroSc {
+    let mut params = BoleroScParams::published();
+    params.model = LdsFillerParams { iterations, tolerance: 0.0, seed: 1, ..params.model };
     params.bones = Bones::Given(oracle_bones(holdout.truth()));
-    params
-}
-
-fn published_model(e_step: EStep, iterations: usize) -> LdsFillerParams {
-    LdsFillerParams {
-        e_step,
-        iterations,
-        tolerance: 0.0,
-        seed: 1,
-        coordinates: Coordinates::Body(Arc::new(MarkerKnowledge::cmu_41())),
-        ..LdsFillerParams::dynammo()
-    }
+    BoleroSc::new(params).unwrap()
 }
 
 fn error(filler: &dyn GapFiller, holdout: &Holdout) -> f64 {
@@ -56,12 +43,14 @@ fn published_settings_give_the_published_errors() {
     let Some(elbow) = elbow_and_forearm() else { return };
     // The authors' code: 2.7e-4 to 2.9e-4 and 2.2e-4 m². Seeds and an inner loop that stops early
     // account for a spread of some ten per cent.
-    let knee_mse = error(&BoleroSc::new(published(&knee, 200)).unwrap(), &knee);
+    let knee_mse = error(&published(&knee, 200), &knee);
     assert!((2.2e-4..3.5e-4).contains(&knee_mse), "{knee_mse:e} m²");
-    let elbow_mse = error(&BoleroSc::new(published(&elbow, 100)).unwrap(), &elbow);
+    let elbow_mse = error(&published(&elbow, 100), &elbow);
     assert!((2.0e-4..2.4e-4).contains(&elbow_mse), "{elbow_mse:e} m²");
     // The authors' code: 5.0e-3 to 5.8e-3 m² over five seeds.
-    let plain = LdsFiller::new(published_model(EStep::Dynammo, 200)).unwrap();
+    let plain =
+        LdsFillerParams { e_step: EStep::Dynammo, ..published(&knee, 200).params().model.clone() };
+    let plain = LdsFiller::new(plain).unwrap();
     let plain_mse = error(&plain, &knee);
     assert!((3.5e-3..7e-3).contains(&plain_mse), "{plain_mse:e} m²");
 }

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used)] // tests
 
 use gapfill::{Bones, BuildError, Coordinates, DEFAULT, METHODS, Options, build};
-use mocap_core::{GapFiller, MarkerKnowledge, MarkerSet, Take};
+use mocap_core::{MarkerKnowledge, MarkerSet, Take};
 use mocap_testkit::{Claims, articulated_take, conformance, with_gaps};
 
 #[test]
@@ -49,7 +49,7 @@ fn refusal(id: &str, options: &Options) -> BuildError {
 #[test]
 fn methods_read_the_options_they_name() {
     let plain = Options { iterations: Some(4), hidden: Some(6), ..Options::default() };
-    let holdout = with_gaps(&dressed(&articulated_take(80, 3)), 3, 3, 4..10);
+    let holdout = with_gaps(dressed(&articulated_take(80, 3)), 3, 3, 4..=9);
     let known = vec![MarkerKnowledge::parse(BODY, "body").unwrap()];
     let plain = Options { known: known.clone(), bones: Bones::Auto(known), ..plain };
     let changes = [

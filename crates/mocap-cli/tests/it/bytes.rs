@@ -40,7 +40,7 @@ fn a_fill_changes_only_the_filled_samples_bytes() {
         .iter()
         .map(|name| file.points().iter().position(|p| p.label == *name).unwrap())
         .collect();
-    let start = 512 * (usize::from(file.header().data_start) - 1);
+    let start = 512 * (usize::from(file.header().data_block) - 1);
     let mut changed = 0;
     for at in (0..before.len()).filter(|&at| before[at] != after[at]) {
         let sample = (at - start) / 16;

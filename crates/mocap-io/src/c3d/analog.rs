@@ -64,12 +64,12 @@ pub(crate) fn decode(file: &C3d) -> AnalogData {
         return AnalogData { samples: 0, channels, values: Vec::new() };
     }
     let unsigned = is_unsigned(file.parameters());
-    let calibration = calibration(file.parameters(), channels, unsigned);
+    let real = matches!(layout.storage, Storage::Real { .. });
+    let calibration = calibration(file.parameters(), channels, unsigned, real);
     let frame_bytes = layout.frame_bytes();
     let value_bytes = layout.storage.value_bytes();
     let skipped = layout.points * 4 * value_bytes;
     let processor = file.processor();
-    let real = matches!(layout.storage, Storage::Real { .. });
     let raw = |bytes: &[u8]| -> f64 {
         if real {
             f64::from(processor.f32_at(bytes, 0))
@@ -92,11 +92,20 @@ fn is_unsigned(parameters: &Parameters) -> bool {
 }
 
 /// Offset and whole scale of each channel.
-fn calibration(parameters: &Parameters, channels: usize, unsigned: bool) -> Vec<(f64, f64)> {
+///
+/// Floats hold the words of an offset-binary converter as 0 to 65,535, whose middle of 32,768 overflows the signed
+/// offset; there is no other reading of an offset of -32,768 that keeps a 16-bit converter within its range.
+fn calibration(
+    parameters: &Parameters,
+    channels: usize,
+    unsigned: bool,
+    real: bool,
+) -> Vec<(f64, f64)> {
     let general = parameters.number("ANALOG", "GEN_SCALE").unwrap_or(1.0);
     let scales = parameters.long_numbers("ANALOG", "SCALE");
     let offsets = parameters.long_numbers("ANALOG", "OFFSET");
-    let offset = |value: f64| if unsigned && value < 0.0 { value + 65_536.0 } else { value };
+    let overflows = |value: f64| value < 0.0 && (unsigned || (real && value <= -32_768.0));
+    let offset = |value: f64| if overflows(value) { value + 65_536.0 } else { value };
     (0..channels)
         .map(|channel| {
             let scale = scales.get(channel).copied().unwrap_or(1.0);

@@ -243,9 +243,12 @@ impl C3d {
     /// Bytes of one sample in the file: four values, at `(frame, point)` counted from 0.
     #[must_use]
     pub fn sample_bytes(&self, frame: usize, point: usize) -> Option<Range<usize>> {
+        if frame >= self.layout.frames || point >= self.layout.points {
+            return None;
+        }
         let size = 4 * self.layout.storage.value_bytes();
         let start = self.layout.data_start + frame * self.layout.frame_bytes() + point * size;
-        (frame < self.layout.frames && point < self.layout.points).then_some(start..start + size)
+        Some(start..start + size)
     }
 
     pub(crate) fn layout(&self) -> &Layout {

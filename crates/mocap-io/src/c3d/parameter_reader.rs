@@ -22,6 +22,18 @@ struct Walk<'a> {
     entries: Vec<Entry>,
 }
 
+/// What every entry starts with.
+struct Head {
+    at: usize,
+    id: u8,
+    name: Range<usize>,
+    locked: bool,
+    /// First byte after the pointer to the next entry.
+    body: usize,
+    /// Where that pointer leads.
+    next: usize,
+}
+
 enum Step {
     Next(usize),
     End(usize),
@@ -89,12 +101,15 @@ impl Walk<'_> {
         let pointer = name.end;
         let offset = usize::from(self.processor.u16_at(self.take(at, pointer, 2)?, 0));
         let locked = name_length < 0;
-        let body = pointer + 2;
-        let content_end = if id <= 0 {
-            self.group(at, id.unsigned_abs(), name, locked, body)?
-        } else {
-            self.parameter(at, id.unsigned_abs(), name, locked, body)?
+        let head = Head {
+            at,
+            id: id.unsigned_abs(),
+            name,
+            locked,
+            body: pointer + 2,
+            next: pointer + offset,
         };
+        let content_end = if id <= 0 { self.group(head)? } else { self.parameter(head)? };
         self.used = self.used.max(content_end);
         match offset {
             0 => Ok(Step::End(content_end)),
@@ -104,31 +119,19 @@ impl Walk<'_> {
         }
     }
 
-    fn group(
-        &mut self,
-        at: usize,
-        id: u8,
-        name: Range<usize>,
-        locked: bool,
-        body: usize,
-    ) -> Result<usize, C3dError> {
+    fn group(&mut self, head: Head) -> Result<usize, C3dError> {
+        let Head { at, id, name, locked, body, next } = head;
         let name = text(self.take(at, name.start, name.len())?);
-        let (description, end) = self.description(at, body)?;
+        let (description, end) = self.description(at, body, next)?;
         let description = text(self.bytes.get(description).unwrap_or_default());
         self.groups.push(Group { id, name, description, locked });
         Ok(end)
     }
 
-    fn parameter(
-        &mut self,
-        at: usize,
-        group: u8,
-        name: Range<usize>,
-        locked: bool,
-        body: usize,
-    ) -> Result<usize, C3dError> {
-        let head = self.take(at, body, 2)?;
-        let (kind, dimensions) = (head[0].cast_signed(), usize::from(head[1]));
+    fn parameter(&mut self, head: Head) -> Result<usize, C3dError> {
+        let Head { at, id: group, name, locked, body, next } = head;
+        let shape = self.take(at, body, 2)?;
+        let (kind, dimensions) = (shape[0].cast_signed(), usize::from(shape[1]));
         let dims = body + 2..body + 2 + dimensions;
         let elements = self
             .take(at, dims.start, dimensions)?
@@ -138,7 +141,7 @@ impl Walk<'_> {
         let data_end = size.and_then(|size| dims.end.checked_add(size)).unwrap_or(usize::MAX);
         let data = dims.end..data_end;
         self.take(at, data.start, data.len())?;
-        let (description, end) = self.description(at, data.end)?;
+        let (description, end) = self.description(at, data.end, next)?;
         let relative = |range: Range<usize>| range.start - self.start..range.end - self.start;
         let entry = Entry {
             group,
@@ -154,7 +157,22 @@ impl Walk<'_> {
     }
 
     /// The description whose length stands at `at`, and the first byte after it.
-    fn description(&self, entry: usize, at: usize) -> Result<(Range<usize>, usize), C3dError> {
+    ///
+    /// Some writers leave the length out: what stands before the next entry is then the description.
+    fn description(
+        &self,
+        entry: usize,
+        at: usize,
+        next: usize,
+    ) -> Result<(Range<usize>, usize), C3dError> {
+        let stop = next.min(self.end).min(self.bytes.len());
+        if stop >= at {
+            let room = self.take(entry, at, stop - at)?;
+            let length = room.first().map(|&length| usize::from(length));
+            if length.is_none_or(|length| length >= room.len()) {
+                return Ok((at..stop, stop));
+            }
+        }
         let length = usize::from(self.take(entry, at, 1)?[0]);
         self.take(entry, at + 1, length)?;
         Ok((at + 1..at + 1 + length, at + 1 + length))

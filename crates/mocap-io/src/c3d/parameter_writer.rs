@@ -9,7 +9,7 @@ use super::number::Processor;
 pub struct NewGroup {
     /// Name, at most 127 bytes.
     pub name: String,
-    /// Description, at most 255 bytes.
+    /// Description, at most 127 bytes.
     pub description: String,
     /// Its parameters.
     pub parameters: Vec<NewParameter>,
@@ -20,7 +20,7 @@ pub struct NewGroup {
 pub struct NewParameter {
     /// Name, at most 127 bytes.
     pub name: String,
-    /// Description, at most 255 bytes.
+    /// Description, at most 127 bytes.
     pub description: String,
     /// Its values.
     pub values: NewValues,
@@ -127,7 +127,8 @@ fn body(
     values: &[u8],
     description: &str,
 ) -> Result<(), C3dError> {
-    limit("length of a description", description.len(), 255)?;
+    // Some readers take this length as signed, too.
+    limit("length of a description", description.len(), 127)?;
     let offset = 2 + values.len() + 1 + description.len();
     // Readers take the pointer as signed.
     let offset =

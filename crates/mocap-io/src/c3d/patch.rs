@@ -33,17 +33,15 @@ pub(crate) fn patch(file: &C3d, edits: &[SampleEdit]) -> Result<Vec<u8>, C3dErro
     let layout = file.layout();
     for edit in edits {
         let SampleEdit { frame, point, value } = *edit;
-        if frame >= layout.frames || point >= layout.points {
+        let range = file.sample_bytes(frame, point);
+        let Some(cell) = range.and_then(|range| bytes.get_mut(range)) else {
             return Err(C3dError::EditOutside {
                 frame,
                 point,
                 frames: layout.frames,
                 points: layout.points,
             });
-        }
-        let size = 4 * layout.storage.value_bytes();
-        let at = layout.data_start + frame * layout.frame_bytes() + point * size;
-        let Some(cell) = bytes.get_mut(at..at + size) else { continue };
+        };
         match value {
             EditValue::Missing => writer.write(cell, None, -1, frame, point)?,
             EditValue::Fill(position) => {

@@ -235,6 +235,15 @@ fn disagreements_of_real_files_are_noted_and_settled() {
 }
 
 #[test]
+fn an_idle_channel_of_an_offset_binary_converter_reads_zero() {
+    let Some(folder) = data_folder() else { return };
+    let file = open(&folder, "c3d-zoo/c3dorg__sample_07__16bitanalog.c3d");
+    let channel = file.analog().labels.iter().position(|label| label == "CH39").unwrap();
+    let analog = file.decode_analog();
+    assert!(analog.values.iter().skip(channel).step_by(analog.channels).all(|&value| value == 0.0));
+}
+
+#[test]
 fn cut_copies_of_real_files_are_never_silently_shorter() {
     let Some(folder) = data_folder() else { return };
     let mut random = Random(75);

@@ -7,6 +7,7 @@ mod c3d_read;
 mod c3d_real;
 mod c3d_support;
 mod text_damage;
+mod text_pair;
 mod text_patch;
 mod text_real;
 mod text_skeletons;

@@ -24,7 +24,7 @@ fn a_file_cut_anywhere_is_refused_or_says_so() {
             let allowed = match name {
                 // The last line of a skeleton is an `end` without content.
                 "asf" => frames == whole && (says || "end".ends_with(file[end..].trim())),
-                _ if UNCOUNTED.contains(&name) && at_line => says == !cut.ends_with('\n'),
+                _ if UNCOUNTED.contains(&name) && at_line => says != cut.ends_with('\n'),
                 _ => frames == whole && (rest_is_blank || says),
             };
             let says_cut = says || UNCOUNTED.contains(&name) && at_line || name == "asf";

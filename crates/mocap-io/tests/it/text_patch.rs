@@ -2,7 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use mocap_io::{Edit, ReadOptions, Sample, text::TextError};
+use mocap_io::{
+    Edit, ReadOptions, Sample,
+    text::{EncodeOptions, TextError},
+};
 use proptest::prelude::*;
 
 use crate::text_support::{CMU, MOTIVE, QUALISYS, Read, TABLES, TRC, take};
@@ -131,7 +134,7 @@ proptest! {
     #[test]
     fn untouched_samples_keep_their_bits_and_edited_ones_arrive(edits in edits(23, 4)) {
         for (format, reader, encode) in TABLES {
-            let file = encode(&take(23, 100.0), &Default::default());
+            let file = encode(&take(23, 100.0), &EncodeOptions::default());
             let parsed = reader(file.clone(), &ReadOptions::default()).unwrap();
             let out = parsed.document.patch(&edits).unwrap();
             let after = reader(out, &ReadOptions::default()).unwrap();

@@ -195,7 +195,7 @@ fn amc_turns_bones_about_their_own_axes() {
 #[test]
 fn amc_may_leave_bones_at_rest_in_every_frame() {
     let stiff: String =
-        AMC.lines().filter(|l| !l.starts_with("tibia")).map(|l| format!("{l}\n")).collect();
+        AMC.split_inclusive('\n').filter(|line| !line.starts_with("tibia")).collect();
     let rate = ReadOptions { rate_hz: Some(60.0), ..ReadOptions::default() };
     let amc = Amc::parse(stiff.into(), &asf(), &rate).unwrap();
     assert_eq!(amc.motion().poses()[0].rotations[3], Rotation::IDENTITY);

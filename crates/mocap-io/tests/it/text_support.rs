@@ -84,8 +84,11 @@ pub const AMC: &str = "#!OML:ASF anything\n:FULLY-SPECIFIED\n:DEGREES\n\
 /// What a parser makes of bytes, in the shape that all formats share.
 pub type Outcome = Result<(usize, FileInfo), TextError>;
 
-/// Every dialect: name, small file, parser to (frames, info).
-pub fn dialects() -> Vec<(&'static str, &'static str, fn(Vec<u8>, &ReadOptions) -> Outcome)> {
+/// Name, small file, parser to (frames, info).
+pub type Dialect = (&'static str, &'static str, fn(Vec<u8>, &ReadOptions) -> Outcome);
+
+/// Every dialect.
+pub fn dialects() -> Vec<Dialect> {
     fn table(parsed: Parsed) -> (usize, FileInfo) {
         (parsed.take.frames(), parsed.info)
     }

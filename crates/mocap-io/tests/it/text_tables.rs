@@ -5,7 +5,7 @@ use mocap_io::{
     text::{EncodeOptions, Parsed, TextError, table::read_csv, table::read_tsv, trc},
 };
 
-use crate::text_support::{CMU, MOTIVE, QUALISYS, TABLES, TRC, difference, take};
+use crate::text_support::{CMU, MOTIVE, QUALISYS, Read, TABLES, TRC, difference, take};
 
 /// Half of the last decimal, 5e-7 mm, and one rounding of a metre-sized number.
 const RESOLUTION_M: f64 = 5.1e-10;
@@ -100,7 +100,7 @@ fn trc_of_other_hands_reads_too() {
 
 #[test]
 fn counts_of_a_header_are_checked() {
-    let cases: [(&str, fn(Vec<u8>, &ReadOptions) -> Result<Parsed, TextError>, &str, &str); 5] = [
+    let cases: [(&str, Read, &str, &str); 5] = [
         (TRC, trc::read, "\t3\t2\tmm", "\t4\t2\tmm"),
         (TRC, trc::read, "\t3\t2\tmm", "\t2\t2\tmm"),
         (QUALISYS, read_tsv, "NO_OF_FRAMES\t3", "NO_OF_FRAMES\t5"),

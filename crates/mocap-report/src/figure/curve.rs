@@ -26,7 +26,7 @@ pub(super) struct Curve {
 impl Curve {
     pub(super) fn coordinate(input: &PlotInput<'_>, marker: usize, axis: usize) -> Self {
         let value = |take: &Take, t: usize| take.position(t, marker).map(|p| MM_PER_M * p[axis]);
-        let name = shorten(input.take.markers().name(marker), 36);
+        let name = shorten(input.name(marker), 36);
         Self {
             heading: format!("{name}  {} (mm)", ["x", "y", "z"][axis]),
             min_span: 10.0,
@@ -38,7 +38,7 @@ impl Curve {
         let (a, b) = bone.markers();
         let value = |take: &Take, t: usize| take.distance(t, a, b).map(|d| MM_PER_M * d);
         let measured = |t| input.measured.contains(t, a) && input.measured.contains(t, b);
-        let name = |m: usize| shorten(input.take.markers().name(m), 19);
+        let name = |m: usize| shorten(input.name(m), 19);
         Self {
             heading: format!("{} \u{2013} {} (mm)", name(a), name(b)),
             nominal: Some(MM_PER_M * bone.length_m()),

@@ -48,7 +48,7 @@ impl Timeline {
                 let present = |t: usize| take.is_observed(t, m);
                 Row {
                     marker: m,
-                    name: take.markers().name(m).to_owned(),
+                    name: input.name(m).to_owned(),
                     measured: runs(frames, measured),
                     filled: runs(frames, |t| !measured(t) && present(t)),
                     missing: runs(frames, |t| !measured(t) && !present(t)),

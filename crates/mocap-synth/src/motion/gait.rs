@@ -49,17 +49,18 @@ pub(crate) const WALK: Style = Style {
     lead: 0.31,
     width: 0.065,
     toe_out: degrees(7.0),
-    lift: 0.045,
+    lift: 0.085,
     pitch: &[
         (0.0, [degrees(-20.0)]),
         (0.10, [0.0]),
         (0.34, [0.0]),
         (0.50, [degrees(24.0)]),
-        (0.64, [degrees(62.0)]),
-        (0.80, [degrees(12.0)]),
-        (0.93, [degrees(-18.0)]),
+        (0.64, [degrees(68.0)]),
+        (0.75, [degrees(42.0)]),
+        (0.86, [degrees(-2.0)]),
+        (0.95, [degrees(-20.0)]),
     ],
-    crouch: 0.036,
+    crouch: 0.030,
     bounce: 0.018,
     lowest: 0.05,
     sway: 0.022,
@@ -140,6 +141,7 @@ impl Gait {
     pub(crate) fn new(style: &'static Style, body: &Body, seconds: f64, dice: &mut Dice) -> Self {
         let size = body.leg() / 0.852;
         let radius = style.radius * size;
+        let heading = dice.uniform(0.0, TAU);
         let slow = |dice: &mut Dice, rms: f64| Wobble::new(dice, rms, 0.07, 0.6);
         let mut gait = Self {
             style,
@@ -147,7 +149,7 @@ impl Gait {
             // Long legs swing slowly, like pendulums.
             cycles_hz: dice.around(style.cycles_hz, 0.03) / size.sqrt(),
             stride: dice.around(style.stride, 0.03) * size,
-            track: Track::new(radius, dice.uniform(0.0, TAU), [0.0; 2]),
+            track: Track::new(radius, heading, [0.0; 2]),
             first_cycle: dice.unit(),
             pitch: Timeline::periodic(style.pitch, 1.0),
             falls: [Vec::new(), Vec::new()],
@@ -161,10 +163,11 @@ impl Gait {
             height: slow(dice, 0.003),
             drift: slow(dice, 0.012),
         };
+        // The take begins anywhere on the track, and there the origin is.
         let start = dice.uniform(0.0, gait.track.lap());
-        let spot = gait.track.at(start);
         gait.first_cycle += (start / gait.stride).floor();
-        gait.track = Track::new(radius, 0.0, [-spot.place[0], -spot.place[1]]);
+        let [x, y] = gait.track.at(gait.progress(gait.cycle(0.0))).place;
+        gait.track = Track::new(radius, heading, [-x, -y]);
         gait.place_feet(seconds, dice);
         gait
     }

@@ -213,7 +213,7 @@ impl Choreography for Jump {
             flexion: flexion + self.arms[i].at(time),
             abduction: apart * (abduction + self.spread[i]),
             outward: degrees(-18.0) + 0.2 * flexion.max(0.0),
-            elbow,
+            elbow: elbow + 0.6 * self.arms[1 - i].at(time),
             pronation: degrees(25.0),
             wrist: degrees(3.0),
             shrug: 0.08 * flexion.max(0.0),
@@ -221,9 +221,13 @@ impl Choreography for Jump {
         };
         let [sway_x, sway_y] = [0, 1].map(|i| self.sway[i].at(time));
         Posture {
-            pelvis_m: [x + sway_x, y + sway_y, body.standing() - 0.018 * body.leg() + height],
-            pelvis: Tilt { pitch, roll: 0.0, yaw: heading },
-            trunk: Tilt { pitch: lean + self.breath.at(time), roll: 0.0, yaw: 0.0 },
+            pelvis_m: [x + sway_x, y + sway_y, body.standing() - 0.010 * body.leg() + height],
+            pelvis: Tilt { pitch, roll: 1.5 * sway_y, yaw: heading + 3.0 * sway_x },
+            trunk: Tilt {
+                pitch: lean + self.breath.at(time),
+                roll: -1.5 * sway_y,
+                yaw: 2.0 * sway_y,
+            },
             head: Tilt {
                 pitch: nod + self.head[0].at(time),
                 roll: 0.0,

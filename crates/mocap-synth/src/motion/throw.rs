@@ -123,13 +123,13 @@ impl Throw {
 
     fn feet(&self, body: &Body, cast: &Cast, time: f64, c: &[f64; CHANNELS]) -> [FootTarget; 2] {
         let half = 0.12 * self.size;
-        let away = |from: f64, span: [f64; 2]| {
-            // One arc over the whole step, so that the foot leaves and meets the floor softly.
-            let u = ((time - span[0]) / (span[1] - span[0])).clamp(0.0, 1.0);
+        // One arc over the whole step, so that the foot leaves and meets the floor softly.
+        let arc = |[from, to]: [f64; 2]| {
+            let u = ((time - from) / (to - from)).clamp(0.0, 1.0);
             let v = u * (1.0 - u);
-            from * 64.0 * v * v * v
+            64.0 * v * v * v
         };
-        let lift = away(0.12 * self.size, cast.step) + away(0.07 * self.size, cast.back);
+        let lift = self.size * (0.12 * arc(cast.step) + 0.07 * arc(cast.back));
         let front_heading = self.heading + degrees(4.0);
         let mut front = pitched_ankle(
             body,
@@ -168,7 +168,7 @@ impl Choreography for Throw {
             abduction: c[10],
             across: c[11],
             outward: c[12],
-            elbow: c[13],
+            elbow: c[13] + 0.6 * self.arms[0].at(time),
             pronation: degrees(25.0),
             wrist: 0.15 * (c[13] - degrees(60.0)).min(0.0),
             shrug: 0.12 * c[10],
@@ -178,13 +178,13 @@ impl Choreography for Throw {
             abduction: c[15],
             across: 0.0,
             outward: degrees(-20.0),
-            elbow: c[16],
+            elbow: c[16] + 0.6 * self.arms[1].at(time),
             pronation: degrees(25.0),
             wrist: 0.0,
             shrug: 0.10 * c[14].max(0.0),
         };
         Posture {
-            pelvis_m: [x, y, body.standing() - 0.02 * body.leg() + c[2]],
+            pelvis_m: [x, y, body.standing() - 0.012 * body.leg() + c[2]],
             pelvis: Tilt { pitch: c[3], roll: 0.0, yaw: self.heading + c[4] + aim },
             trunk: Tilt { pitch: c[5], roll: c[6], yaw: c[7] },
             head: Tilt {
