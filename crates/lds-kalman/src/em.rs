@@ -96,6 +96,9 @@ pub struct UpdateContext<'a> {
 
 /// Chooses values for the missing entries after each E-step.
 ///
+/// Under [`EStep::FilledAsObserved`] it is not asked in the first iteration: what an arbitrary
+/// first model predicts would count as observed from then on.
+///
 /// Whatever an update writes to observed entries is undone.
 pub trait MissingUpdate {
     /// Writes new values for the missing entries of `filled`, `(T, m)`, which holds the present
@@ -257,6 +260,9 @@ impl Loop<'_> {
     }
 
     fn update_missing(&mut self, hook: &mut dyn MissingUpdate) {
+        if self.trace.len() == 1 && self.params.e_step == EStep::FilledAsObserved {
+            return;
+        }
         self.pass.predict(&self.dynamics, &mut self.prediction);
         let context = UpdateContext {
             iteration: self.trace.len(),

@@ -19,7 +19,7 @@ pub enum EStep {
     #[default]
     Exact,
     /// The present fill of a missing entry counts as if it had been observed. `BoLeRO` as
-    /// published does this.
+    /// published does this, and keeps the interpolation through the first iteration.
     ///
     /// Deviates from [Li10] Eq. (17): the formula is applied to filled values.
     FilledAsObserved,

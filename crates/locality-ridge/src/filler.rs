@@ -22,8 +22,8 @@ use crate::{
 /// 3. The regression's error at the borders is carried across the gap ([`Residual`](crate::Residual)),
 ///    so the fill meets the observed samples.
 ///
-/// Where fewer than `core` candidates are seen throughout, the gap is cut into segments with
-/// constant neighbours; the step between two segments is spread over 0.1 s on either side. With
+/// Where fewer than four candidates are seen throughout, the gap is cut into segments with constant
+/// neighbours; the step between two segments is spread over 0.1 s on either side. With
 /// fewer than three neighbours, or neighbours on a line, the local frame is their centre and does
 /// not turn. Frames that show no neighbour at all are bridged by a straight line for up to 0.1 s;
 /// gaps with a longer black-out stay open.

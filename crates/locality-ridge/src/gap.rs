@@ -58,7 +58,7 @@ impl<'a> MarkerFiller<'a> {
             return Err(Refusal::TooFewSamples { seen, needed: self.params.min_training });
         }
         let span = gap.frames.start.saturating_sub(1)..(gap.frames.end + 1).min(self.take.frames());
-        let steps = self.predict(&span);
+        let steps = self.predict(&gap.frames, &span);
         let predicts =
             |(t, step): (usize, &Option<Step>)| gap.frames.contains(&t) && step.is_some();
         if !span.clone().zip(&steps).any(predicts) {
@@ -80,9 +80,9 @@ impl<'a> MarkerFiller<'a> {
     }
 
     /// Predictions for the frames of `span`, `None` where no neighbour is seen.
-    fn predict(&mut self, span: &Range<usize>) -> Vec<Option<Step>> {
+    fn predict(&mut self, gap: &Range<usize>, span: &Range<usize>) -> Vec<Option<Step>> {
         let mut steps = Vec::with_capacity(span.len());
-        for segment in segments(self.take, &self.ranking, span.clone(), self.params.core) {
+        for segment in segments(self.take, &self.ranking, gap, span, self.params.core) {
             let predictor = self.predictor(&segment.usable);
             for t in segment.frames {
                 steps.push(predictor.as_ref().map(|predictor| Step {
@@ -178,17 +178,29 @@ impl Path {
         }
     }
 
-    /// The step at a joint beyond what the path moves in one frame on either side.
+    /// The step at a joint beyond what the path moves in one frame, judged by its speed on either
+    /// side: by the cubic through two speeds before and two after, or by their mean.
     fn excess(&self, before: &Range<usize>, after: &Range<usize>) -> Option<[f64; 3]> {
         let change = |i: usize| Some(sub(self.places[i + 1]?, self.places[i]?));
-        let speeds = [
-            (before.len() > 1).then(|| change(before.end - 2)).flatten(),
-            (after.len() > 1).then(|| change(after.start)).flatten(),
+        let joint = after.start;
+        let near = [
+            (before.len() > 1).then(|| change(joint - 2)).flatten(),
+            (after.len() > 1).then(|| change(joint)).flatten(),
         ];
-        let known = speeds.iter().flatten().count().max(1) as f64;
-        let speed =
-            speeds.iter().flatten().fold([0.0; 3], |sum, &v| add(sum, scale(1.0 / known, v)));
-        Some(sub(change(before.end - 1)?, speed))
+        let far = [
+            (before.len() > 2).then(|| change(joint - 3)).flatten(),
+            (after.len() > 2).then(|| change(joint + 1)).flatten(),
+        ];
+        let mean = |speeds: [Option<[f64; 3]>; 2]| {
+            let known = speeds.iter().flatten().count().max(1) as f64;
+            speeds.iter().flatten().fold([0.0; 3], |sum, &v| add(sum, scale(1.0 / known, v)))
+        };
+        let speed = if far.iter().all(Option::is_some) {
+            add(scale(4.0 / 3.0, mean(near)), scale(-1.0 / 3.0, mean(far)))
+        } else {
+            mean(near)
+        };
+        Some(sub(change(joint - 1)?, speed))
     }
 
     fn shift(&mut self, i: usize, by: [f64; 3]) {

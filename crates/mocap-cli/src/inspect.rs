@@ -19,9 +19,15 @@ pub(crate) struct Inspect {
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+    /// List every gap, not the first 20 alone
+    #[arg(long)]
+    gaps: bool,
     #[command(flatten)]
     read: ReadArgs,
 }
+
+/// Gaps that the text lists unless it is asked for all.
+const SHOWN_GAPS: usize = 20;
 
 impl Inspect {
     pub(crate) fn run(self) -> Result<()> {
@@ -87,6 +93,7 @@ impl Inspect {
         }
         info.notes.iter().for_each(|note| println!("  note      {note}"));
         println!("\n{}", summary.to_text());
+        print!("{}", summary.gaps_text(if self.gaps { usize::MAX } else { SHOWN_GAPS }));
         Ok(())
     }
 

@@ -42,9 +42,9 @@ fn published_settings_give_the_published_errors() {
     let Some(knee) = knee_and_shin() else { return };
     let Some(elbow) = elbow_and_forearm() else { return };
     // The authors' code: 2.7e-4 to 2.9e-4 and 2.2e-4 m². Seeds and an inner loop that stops early
-    // account for a spread of some ten per cent.
+    // account for a spread of ten per cent.
     let knee_mse = error(&published(&knee, 200), &knee);
-    assert!((2.2e-4..3.5e-4).contains(&knee_mse), "{knee_mse:e} m²");
+    assert!((2.4e-4..3.2e-4).contains(&knee_mse), "{knee_mse:e} m²");
     let elbow_mse = error(&published(&elbow, 100), &elbow);
     assert!((2.0e-4..2.4e-4).contains(&elbow_mse), "{elbow_mse:e} m²");
     // The authors' code: 5.0e-3 to 5.8e-3 m² over five seeds.

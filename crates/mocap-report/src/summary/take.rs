@@ -108,6 +108,19 @@ impl TakeSummary {
         text
     }
 
+    /// The first `limit` gaps as aligned text, and how many more there are; empty without gaps.
+    #[must_use]
+    pub fn gaps_text(&self, limit: usize) -> String {
+        let mut table = self.gap_table();
+        let more = table.rows.len().saturating_sub(limit);
+        table.rows.truncate(limit);
+        match (table.rows.is_empty(), more) {
+            (true, _) => String::new(),
+            (false, 0) => table.to_text(),
+            (false, more) => format!("{}… and {}\n", table.to_text(), counted(more, "more gap")),
+        }
+    }
+
     /// Two lines on the take as a whole.
     pub(crate) fn headline(&self) -> String {
         format!(
