@@ -25,5 +25,6 @@ pub struct Options {
 pub fn run(root: &Path, options: &Options) -> Result<()> {
     setup::ensure(options.yes)?;
     process::build_mocap(root)?;
-    process::run(process::mocap(root).arg("demo").arg("-o").arg(&options.output))
+    let take = root.join("fixtures/run.c3d");
+    process::run(process::mocap(root).arg("demo").arg(take).arg("-o").arg(&options.output))
 }

@@ -76,7 +76,11 @@ impl Inspect {
         println!("{}", self.input.display());
         println!("  format    {}, {}", info.format.extension().to_uppercase(), info.storage);
         let assumed = if info.unit_declared { "" } else { " (assumed)" };
-        println!("  unit      {}{assumed}, up axis {}", info.unit.symbol(), up.unwrap_or("unknown"));
+        println!(
+            "  unit      {}{assumed}, up axis {}",
+            info.unit.symbol(),
+            up.unwrap_or("unknown")
+        );
         let marks = info.missing;
         for (count, how) in [
             (marks.negative_residual, "a negative residual"),

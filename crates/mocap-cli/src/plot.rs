@@ -37,7 +37,8 @@ pub(crate) struct Plot {
 impl Plot {
     pub(crate) fn run(self) -> Result<()> {
         let others = [&self.filled, &self.truth].into_iter().flatten();
-        let inputs: Vec<_> = std::iter::once(&self.input).chain(others).map(PathBuf::as_path).collect();
+        let inputs: Vec<_> =
+            std::iter::once(&self.input).chain(others).map(PathBuf::as_path).collect();
         self.output.check(&inputs)?;
         FigureFormat::from_path(&self.output.output)?;
         let input = self.read.read(&self.input)?;

@@ -44,6 +44,7 @@ pub(crate) fn make(
     rate_hz: f64,
     seed: u64,
 ) -> Result<mocap_core::Take> {
-    let params = mocap_synth::SynthParams { motion: activity, frames, rate_hz, seed, ..Default::default() };
+    let params =
+        mocap_synth::SynthParams { motion: activity, frames, rate_hz, seed, ..Default::default() };
     Ok(mocap_synth::Synth::new(params)?.take()?.into_take())
 }

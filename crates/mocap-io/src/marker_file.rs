@@ -8,15 +8,13 @@ use crate::{
     Edit, FileInfo, Format, LengthUnit, MissingMarks, ParseError, ReadError, ReadOptions, Sample,
     WriteError,
     c3d::{
-        C3d, C3dOptions, EditValue, ModelOutput, NewC3d, PointInfo, PointKind, Processor, SampleEdit,
-        SampleState, Storage,
+        C3d, C3dOptions, EditValue, ModelOutput, NewC3d, PointInfo, PointKind, Processor,
+        SampleEdit, SampleState, Storage,
     },
     format::is_gzip,
+    recording::ASSUMED_RATE_HZ,
     text::{self, Document, EncodeOptions},
 };
-
-/// Sampling rate in Hz of a file that states none, unless the reader is told better; a note says so.
-pub(crate) const ASSUMED_RATE_HZ: f64 = 120.0;
 
 /// A marker file: its take, what it says of itself, and its bytes, so that it can be written back
 /// with single samples changed and all else as it was.
@@ -224,22 +222,28 @@ fn c3d_info(file: &C3d, options: &ReadOptions) -> FileInfo {
     info
 }
 
+/// Frames decoded at a time: enough to keep the decoder in its stride, few enough to need no second
+/// copy of a long file.
+const CHUNK: usize = 256;
+
 /// Positions `(T, M, 3)` in metres, NaN where missing, and how the file marks what is missing.
 fn c3d_samples(file: &C3d, points: &[usize], unit: LengthUnit) -> (Array3<f64>, MissingMarks) {
-    let data = file.decode_points();
     let metres = unit.metres();
     let mut marks = MissingMarks::default();
-    let mut positions = Array3::from_elem((data.frames, points.len(), 3), f64::NAN);
-    for t in 0..data.frames {
-        for (m, &point) in points.iter().enumerate() {
-            let sample = data.index(t, point);
-            match data.states[sample] {
-                SampleState::NegativeResidual => marks.negative_residual += 1,
-                SampleState::NotFinite => marks.not_a_number += 1,
-                SampleState::ExactZero => marks.exact_zero += 1,
-                SampleState::Present => {
-                    for (axis, c) in data.xyz[sample].into_iter().enumerate() {
-                        positions[(t, m, axis)] = f64::from(c) * metres;
+    let mut positions = Array3::from_elem((file.frames(), points.len(), 3), f64::NAN);
+    for start in (0..file.frames()).step_by(CHUNK) {
+        let data = file.decode_frames(start..start + CHUNK);
+        for t in 0..data.frames {
+            for (m, &point) in points.iter().enumerate() {
+                let sample = data.index(t, point);
+                match data.states[sample] {
+                    SampleState::NegativeResidual => marks.negative_residual += 1,
+                    SampleState::NotFinite => marks.not_a_number += 1,
+                    SampleState::ExactZero => marks.exact_zero += 1,
+                    SampleState::Present => {
+                        for (axis, c) in data.xyz[sample].into_iter().enumerate() {
+                            positions[(start + t, m, axis)] = f64::from(c) * metres;
+                        }
                     }
                 }
             }

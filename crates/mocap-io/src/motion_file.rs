@@ -7,7 +7,8 @@ use mocap_core::Motion;
 
 use crate::{
     FileInfo, Format, LengthUnit, ParseError, ReadError, ReadOptions, WriteError,
-    marker_file::{ASSUMED_RATE_HZ, read_bytes},
+    marker_file::read_bytes,
+    recording::ASSUMED_RATE_HZ,
     text::{amc::Amc, asf::Asf, bvh, bvh::Bvh},
 };
 
@@ -27,15 +28,10 @@ impl MotionFile {
     ///
     /// # Errors
     /// [`ReadError`], with the path.
-    pub fn read(
-        path: &Path,
-        asf: Option<&Path>,
-        options: &ReadOptions,
-    ) -> Result<Self, ReadError> {
+    pub fn read(path: &Path, asf: Option<&Path>, options: &ReadOptions) -> Result<Self, ReadError> {
         let format =
             Format::of(path).ok_or_else(|| ReadError::Extension { path: path.to_owned() })?;
-        let content =
-            |source: ParseError| ReadError::Content { path: path.to_owned(), source };
+        let content = |source: ParseError| ReadError::Content { path: path.to_owned(), source };
         if format != Format::Amc {
             return Self::parse(read_bytes(path)?, format, options).map_err(content);
         }

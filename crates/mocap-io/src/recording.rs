@@ -2,6 +2,10 @@ use mocap_core::{CellState, Filled, Mask, Take};
 
 use crate::{Format, LengthUnit};
 
+/// Sampling rate in Hz of a file that states none, unless the reader is told better; a note says so.
+/// It is that of the CMU recordings.
+pub(crate) const ASSUMED_RATE_HZ: f64 = 120.0;
+
 /// How to read a file.
 #[derive(Debug, Clone, Default)]
 pub struct ReadOptions {

@@ -19,7 +19,8 @@ fn a_round_trip_through_every_format_keeps_samples_and_gaps() {
         let target = if to == "c3d" { "back.c3d".into() } else { format!("gap.{to}") };
         bench.ok(&format!("convert gap.{from} {target}"));
     }
-    let (first, last) = (bench.json("inspect gap.c3d --json"), bench.json("inspect back.c3d --json"));
+    let (first, last) =
+        (bench.json("inspect gap.c3d --json"), bench.json("inspect back.c3d --json"));
     assert_eq!(first["gaps"], last["gaps"]);
     bench.ok("fill gap.c3d -o filled.c3d --method linear");
     bench.ok("fill back.c3d -o filled_back.c3d --method linear");
@@ -51,7 +52,11 @@ fn a_fill_changes_only_the_filled_samples_bytes() {
     assert!(changed > 62 * 4, "only {changed} bytes changed");
     let filled = C3d::parse(after, &C3dOptions::default()).unwrap().decode_points();
     for frame in 59..90 {
-        assert_eq!(filled.words[filled.index(frame, hidden[0])], 0, "residual and camera mask are 0");
+        assert_eq!(
+            filled.words[filled.index(frame, hidden[0])],
+            0,
+            "residual and camera mask are 0"
+        );
     }
 }
 

@@ -73,7 +73,10 @@ fn bones_are_listed_and_read_back() {
     bench.ok("fill gap.c3d -o filled.c3d --method bolero-sc --bones bones.csv --iterations 5");
     std::fs::write(bench.path("wrong.csv"), "marker_a,marker_b,length_mm\nRKNE,ELBOW,3\n").unwrap();
     let error = bench.fails("fill gap.c3d -o x.c3d --bones wrong.csv");
-    assert!(error.contains("wrong.csv") && error.contains("line 2") && error.contains("ELBOW"), "{error}");
+    assert!(
+        error.contains("wrong.csv") && error.contains("line 2") && error.contains("ELBOW"),
+        "{error}"
+    );
 }
 
 #[test]

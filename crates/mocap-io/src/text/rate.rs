@@ -1,5 +1,5 @@
 use super::number::roundest;
-use crate::ReadOptions;
+use crate::{ReadOptions, recording::ASSUMED_RATE_HZ};
 
 /// What is known of a table's sampling rate.
 #[derive(Default)]
@@ -17,9 +17,6 @@ pub(super) struct Rate {
     pub hz: f64,
     pub is_declared: bool,
 }
-
-/// The rate of CMU's recordings, for files that state none.
-pub(super) const ASSUMED_HZ: f64 = 120.0;
 
 /// Settles the rate: the header's, else the time column's, else the caller's, else 120 Hz.
 pub(super) fn settle(
@@ -49,10 +46,10 @@ pub(super) fn settle(
 pub(super) fn undeclared(options: &ReadOptions, notes: &mut Vec<String>) -> f64 {
     options.rate_hz.unwrap_or_else(|| {
         notes.push(format!(
-            "the file states no sampling rate; {ASSUMED_HZ} Hz is assumed, as for CMU's \
+            "the file states no sampling rate; {ASSUMED_RATE_HZ} Hz is assumed, as for CMU's \
              recordings; give the rate if it is another"
         ));
-        ASSUMED_HZ
+        ASSUMED_RATE_HZ
     })
 }
 
