@@ -1,9 +1,4 @@
-use std::sync::Arc;
-
-use lds_kalman::{
-    EStep,
-    filler::{Coordinates, LdsFillerParams},
-};
+use lds_kalman::{EStep, Start, filler::LdsFillerParams};
 use mocap_core::{BoneRule, BoneSet, FillError, MarkerKnowledge, RigidPairs, Take};
 
 use crate::solver::Solver;
@@ -66,10 +61,11 @@ pub struct BoleroScParams {
 }
 
 impl Default for BoleroScParams {
-    /// Exact EM from the data's own subspace, and the weight of [Li10].
+    /// E-step, start and weight of [Li10], with the centroid as origin.
     fn default() -> Self {
+        let (e_step, start) = (EStep::FilledAsObserved, Start::Random);
         Self {
-            model: LdsFillerParams::default(),
+            model: LdsFillerParams { e_step, start, ..LdsFillerParams::default() },
             lambda: 1e6,
             bones: Bones::Auto,
             solver: Solver::default(),
@@ -83,9 +79,8 @@ impl BoleroScParams {
     /// frame are those of the visible samples.
     #[must_use]
     pub fn published() -> Self {
-        let coordinates = Coordinates::Body(Arc::new(MarkerKnowledge::cmu_41()));
         let e_step = EStep::FilledAsObserved;
-        let model = LdsFillerParams { e_step, coordinates, ..LdsFillerParams::dynammo() };
+        let model = LdsFillerParams { e_step, ..LdsFillerParams::published() };
         Self { model, ..Self::default() }
     }
 

@@ -103,14 +103,22 @@ impl Default for LdsFillerParams {
 }
 
 impl LdsFillerParams {
-    /// `DynaMMo` as published: its own E-step, a random start, and coordinates as they are.
+    /// `DynaMMo`'s E-step, with start and origin as in the default.
     #[must_use]
     pub fn dynammo() -> Self {
+        Self { e_step: EStep::Dynammo, ..Self::default() }
+    }
+
+    /// `DynaMMo` with all settings of [Li10] §4: a random start, body-local coordinates of the CMU
+    /// marker set with their own origin. For comparison with published figures: the random
+    /// transition grows what it predicts, beyond all bounds in frames that show nothing.
+    #[must_use]
+    pub fn published() -> Self {
         Self {
             start: Start::Random,
-            e_step: EStep::Dynammo,
             origin: Origin::AsRecorded,
-            ..Self::default()
+            coordinates: Coordinates::Body(Arc::new(MarkerKnowledge::cmu_41())),
+            ..Self::dynammo()
         }
     }
 

@@ -5,6 +5,7 @@ use clap::Args;
 use gapfill::Bones as Choice;
 use mocap_io::write_bones;
 
+use crate::say::say;
 use crate::{files::ReadArgs, marker_sets::MarkerSetArgs};
 
 /// List the bones of a recording: marker pairs a fixed distance apart, with their lengths
@@ -32,7 +33,7 @@ impl Bones {
                 self.input.display()
             );
         }
-        print!("{}", write_bones(&bones, file.take().markers()));
+        say!("{}", write_bones(&bones, file.take().markers()).trim_end());
         Ok(())
     }
 }

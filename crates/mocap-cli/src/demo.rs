@@ -8,6 +8,7 @@ use mocap_io::write_atomic;
 use mocap_report::{PlotInput, render_png, render_svg};
 use mocap_synth::Activity;
 
+use crate::say::say;
 use crate::{
     files::{ReadArgs, create_folder},
     fill, synth,
@@ -72,7 +73,7 @@ impl Demo {
         let (svg, png) = (self.output.join("fill.svg"), self.output.join("fill.png"));
         write_atomic(&svg, &render_svg(&plot)?, true)?;
         write_atomic(&png, &render_png(&plot)?, true)?;
-        println!("\nThe fill by {DRAWN} beside the truth: {} and {}", svg.display(), png.display());
+        say!("\nThe fill by {DRAWN} beside the truth: {} and {}", svg.display(), png.display());
         Ok(())
     }
 }
@@ -98,7 +99,7 @@ fn hide(truth: Take, gap: Range<usize>) -> Result<Holdout> {
 
 fn introduce(holdout: &Holdout, gap: &Range<usize>) {
     let take = holdout.truth();
-    println!(
+    say!(
         "{} markers, {} frames at {} Hz. Hidden: {} in frames {} to {} ({:.1} s).\n",
         take.marker_count(),
         take.frames(),
@@ -108,18 +109,27 @@ fn introduce(holdout: &Holdout, gap: &Range<usize>) {
         gap.end,
         gap.len() as f64 / take.rate_hz(),
     );
-    println!(
+    say!(
         "{:<10} {:>12} {:>9} {:>9} {:>14} {:>9}",
-        "method", "mse [m²]", "mean", "p95", "bone deviation", "time"
+        "method",
+        "mse [m²]",
+        "mean",
+        "p95",
+        "bone deviation",
+        "time"
     );
 }
 
 fn print_row(method: &str, run: &fill::Run, holdout: &Holdout, bones: &BoneSet) -> Result<()> {
     let score = metrics::score(holdout.truth(), run.filled.take(), holdout.hidden())?;
     let bones = metrics::bone_deviation(run.filled.take(), bones, Some(holdout.hidden()))?;
-    println!(
+    say!(
         "{method:<10} {:>12.2e} {:>6.1} mm {:>6.1} mm {:>11.1} mm {:>7.2} s",
-        score.mse_m2, score.mean_mm, score.p95_mm, bones.mean_mm, run.seconds
+        score.mse_m2,
+        score.mean_mm,
+        score.p95_mm,
+        bones.mean_mm,
+        run.seconds
     );
     Ok(())
 }

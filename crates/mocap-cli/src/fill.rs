@@ -13,6 +13,7 @@ use mocap_report::{FillSummary, PlotInput, TakeSummary, html_page, render_png, r
 use serde_json::json;
 use sha2::{Digest, Sha256};
 
+use crate::say::say;
 use crate::{
     files::{OutputArgs, ReadArgs, create_folder},
     marker_sets::MarkerSetArgs,
@@ -127,10 +128,10 @@ impl Fill {
             report(folder, &title, &take, &filled, &bones, &summary)?;
         }
         if self.json {
-            println!("{}", serde_json::to_string(&summary)?);
+            say!("{}", serde_json::to_string(&summary)?);
         } else {
-            println!("{}", summary.to_text());
-            println!("wrote {}", self.output.output.display());
+            say!("{}", summary.to_text());
+            say!("wrote {}", self.output.output.display());
         }
         Ok(())
     }

@@ -8,6 +8,7 @@ use mocap_report::TakeSummary;
 use serde_json::json;
 
 use crate::files::ReadArgs;
+use crate::say::say;
 
 /// Tell what a recording holds: markers, rate, units, storage, and where its gaps are
 ///
@@ -70,17 +71,13 @@ impl Inspect {
             ] {
                 object[key] = value;
             }
-            println!("{object}");
+            say!("{object}");
             return Ok(());
         }
-        println!("{}", self.input.display());
-        println!("  format    {}, {}", info.format.extension().to_uppercase(), info.storage);
+        say!("{}", self.input.display());
+        say!("  format    {}, {}", info.format.extension().to_uppercase(), info.storage);
         let assumed = if info.unit_declared { "" } else { " (assumed)" };
-        println!(
-            "  unit      {}{assumed}, up axis {}",
-            info.unit.symbol(),
-            up.unwrap_or("unknown")
-        );
+        say!("  unit      {}{assumed}, up axis {}", info.unit.symbol(), up.unwrap_or("unknown"));
         let marks = info.missing;
         for (count, how) in [
             (marks.negative_residual, "a negative residual"),
@@ -89,15 +86,15 @@ impl Inspect {
             (marks.blank, "blank fields"),
         ] {
             if count > 0 {
-                println!("  missing   {count} samples by {how}");
+                say!("  missing   {count} samples by {how}");
             }
         }
         if !info.other_points.is_empty() {
-            println!("  other     {} points that are no markers", info.other_points.len());
+            say!("  other     {} points that are no markers", info.other_points.len());
         }
-        info.notes.iter().for_each(|note| println!("  note      {note}"));
-        println!("\n{}", summary.to_text());
-        print!("{}", summary.gaps_text(if self.gaps { usize::MAX } else { SHOWN_GAPS }));
+        info.notes.iter().for_each(|note| say!("  note      {note}"));
+        say!("\n{}", summary.to_text());
+        say!("{}", summary.gaps_text(if self.gaps { usize::MAX } else { SHOWN_GAPS }));
         Ok(())
     }
 
@@ -109,11 +106,11 @@ impl Inspect {
         let (frames, rate) = (motion.poses().len(), motion.rate_hz());
         if self.json {
             let object = json!({"joints": joints, "frames": frames, "rate_hz": rate});
-            println!("{object}");
+            say!("{object}");
         } else {
-            println!("{}", self.input.display());
-            println!("  {} joints, {frames} frames at {rate} Hz", joints.len());
-            println!("  {}", joints.join(" "));
+            say!("{}", self.input.display());
+            say!("  {} joints, {frames} frames at {rate} Hz", joints.len());
+            say!("  {}", joints.join(" "));
         }
         Ok(())
     }

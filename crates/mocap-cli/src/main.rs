@@ -1,5 +1,5 @@
 //! The `mocap` command: inspect, fill, convert, occlude, score and plot recordings.
-#![allow(clippy::print_stdout, clippy::print_stderr)] // a command talks to its user
+#![allow(clippy::print_stderr)] // a command talks to its user
 
 mod bones;
 mod convert;
@@ -12,6 +12,7 @@ mod methods;
 mod occlude;
 mod plot;
 mod progress;
+mod say;
 mod score;
 mod synth;
 

@@ -2,6 +2,8 @@ use anyhow::Result;
 use clap::Args;
 use serde_json::json;
 
+use crate::say::say;
+
 /// List the gap-filling methods
 #[derive(Debug, Args)]
 pub(crate) struct Methods {
@@ -17,13 +19,13 @@ impl Methods {
                 .iter()
                 .map(|m| json!({"id": m.id, "summary": m.summary, "options": m.options}))
                 .collect();
-            println!("{}", serde_json::to_string(&list)?);
+            say!("{}", serde_json::to_string(&list)?);
             return Ok(());
         }
         for method in gapfill::METHODS {
-            println!("{:<10} {}", method.id, method.summary);
+            say!("{:<10} {}", method.id, method.summary);
             if !method.options.is_empty() {
-                println!("{:<10} options: {}", "", method.options.join(" "));
+                say!("{:<10} options: {}", "", method.options.join(" "));
             }
         }
         Ok(())

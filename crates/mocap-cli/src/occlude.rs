@@ -6,6 +6,7 @@ use mocap_core::{Mask, Take};
 use mocap_io::Edit;
 
 use crate::files::{self, OutputArgs, ReadArgs};
+use crate::say::say;
 
 /// Hide samples, to see how well a method brings them back
 ///
@@ -39,7 +40,7 @@ impl Occlude {
         let hidden = self.hidden(file.take(), file.info().first_frame)?;
         let edits = Edit::hides(file.take(), &hidden);
         self.output.write(&file.patched(&edits)?)?;
-        println!("{} samples hidden in {}", edits.len(), self.output.output.display());
+        say!("{} samples hidden in {}", edits.len(), self.output.output.display());
         Ok(())
     }
 

@@ -6,6 +6,7 @@ use gapfill::Bones;
 use mocap_io::MarkerFile;
 use mocap_report::{FigureFormat, PlotInput, plot_take};
 
+use crate::say::say;
 use crate::{
     files::{OutputArgs, ReadArgs},
     marker_sets::MarkerSetArgs,
@@ -59,7 +60,7 @@ impl Plot {
         };
         let bytes = plot_take(&plot, &self.output.output)?;
         self.output.write(&bytes)?;
-        println!("wrote {}", self.output.output.display());
+        say!("wrote {}", self.output.output.display());
         Ok(())
     }
 }

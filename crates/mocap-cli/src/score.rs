@@ -6,6 +6,7 @@ use mocap_core::Mask;
 use serde_json::json;
 
 use crate::files::ReadArgs;
+use crate::say::say;
 
 /// Compare a fill with the truth, over the samples that were hidden
 ///
@@ -55,15 +56,15 @@ impl Score {
                 "p95_mm": score.p95_mm, "max_mm": score.max_mm, "rms_mm": score.rms_mm,
                 "hidden_samples": score.hidden_cells, "unfilled_samples": score.unfilled_cells,
             });
-            println!("{object}");
+            say!("{object}");
         } else {
-            println!("hidden samples   {:>10}", score.hidden_cells);
-            println!("left open        {:>10}", score.unfilled_cells);
-            println!("mse (Eq. 13)     {:>10.3e} m²", score.mse_m2);
-            println!("mean 3-D error   {:>10.2} mm", score.mean_mm);
-            println!("median           {:>10.2} mm", score.median_mm);
-            println!("95 % quantile    {:>10.2} mm", score.p95_mm);
-            println!("largest          {:>10.2} mm", score.max_mm);
+            say!("hidden samples   {:>10}", score.hidden_cells);
+            say!("left open        {:>10}", score.unfilled_cells);
+            say!("mse (Eq. 13)     {:>10.3e} m²", score.mse_m2);
+            say!("mean 3-D error   {:>10.2} mm", score.mean_mm);
+            say!("median           {:>10.2} mm", score.median_mm);
+            say!("95 % quantile    {:>10.2} mm", score.p95_mm);
+            say!("largest          {:>10.2} mm", score.max_mm);
         }
         Ok(())
     }

@@ -1,4 +1,5 @@
 //! The interpolating fillers against closed forms and the shared contract.
+#![allow(clippy::unwrap_used)] // tests
 
 use baselines::{CubicSpline, Edges, Linear};
 use mocap_core::{CellState, GapFiller, MarkerSet, Refusal, Take};

@@ -34,7 +34,10 @@ fn wrong_options_are_refused_when_building() {
         Options { lambda: Some(-1.0), ..Options::default() },
         Options { lambda: Some(f64::NAN), ..Options::default() },
     ] {
-        assert!(matches!(refusal("bolero-sc", &options), BuildError::Options { .. }), "{options:?}");
+        assert!(
+            matches!(refusal("bolero-sc", &options), BuildError::Options { .. }),
+            "{options:?}"
+        );
     }
 }
 
@@ -80,6 +83,10 @@ const BODY: &str = "marker p0\nmarker p1\nmarker p2\nmarker p3\nmarker p4\nmarke
 
 fn dressed(take: &Take) -> Take {
     let names = (0..take.marker_count()).map(|m| format!("p{m}"));
-    Take::from_positions(MarkerSet::new(names).unwrap(), take.rate_hz(), take.positions().to_owned())
-        .unwrap()
+    Take::from_positions(
+        MarkerSet::new(names).unwrap(),
+        take.rate_hz(),
+        take.positions().to_owned(),
+    )
+    .unwrap()
 }

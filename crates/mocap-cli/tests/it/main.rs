@@ -1,5 +1,5 @@
 //! The command as its users run it.
-#![allow(clippy::unwrap_used)] // tests
+#![allow(clippy::unwrap_used, clippy::print_stdout)] // tests
 
 mod bytes;
 mod contract;

@@ -62,3 +62,18 @@ fn errors_name_what_is_wrong_and_the_way_out() {
         assert!(!exists(&bench.path("x.c3d")), "`{line}` left an output");
     }
 }
+
+#[test]
+#[cfg(unix)]
+fn a_reader_who_stops_early_is_no_error() {
+    let bench = Bench::with_gap("c3d");
+    let script =
+        format!("{} inspect gap.c3d | true; exit ${{PIPESTATUS[0]}}", env!("CARGO_BIN_EXE_mocap"));
+    let output = std::process::Command::new("bash")
+        .args(["-c", &script])
+        .current_dir(bench.folder.path())
+        .output()
+        .unwrap();
+    assert!(output.status.success());
+    assert!(output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
+}
