@@ -1,8 +1,10 @@
 #![doc = include_str!("../README.md")]
 
+mod joined;
 mod options;
 mod registry;
 
 pub use baselines::Edges;
+pub use joined::{Borders, Joined};
 pub use options::{Bones, Coordinates, Options};
 pub use registry::{BuildError, DEFAULT, METHODS, Method, build};

@@ -1,6 +1,6 @@
 use mocap_core::{BoneRule, BoneSet, CoreError, MarkerKnowledge, Take};
 
-use crate::Edges;
+use crate::{Borders, Edges};
 
 /// What a user may say about any method; a method reads what concerns it.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,6 +21,9 @@ pub struct Options {
     pub seed: u64,
     /// What becomes of gaps at the start or end of the take, for methods that interpolate.
     pub edges: Edges,
+    /// What becomes of the step at the borders of a gap; `None`: the method's own choice, which is to
+    /// join for `lds` and `bolero-sc`.
+    pub borders: Option<Borders>,
 }
 
 impl Default for Options {
@@ -36,6 +39,7 @@ impl Default for Options {
             iterations: None,
             seed: 0,
             edges: Edges::default(),
+            borders: None,
         }
     }
 }

@@ -6,7 +6,7 @@ use lds_kalman::filler::{self, LdsFiller, LdsFillerParams};
 use mocap_core::{BoneRule, BoneSet, FillError, GapFiller, MarkerKnowledge, MarkerSet};
 use thiserror::Error;
 
-use crate::{Bones, Coordinates, Options};
+use crate::{Bones, Borders, Coordinates, Joined, Options};
 
 /// The method to take where the user names none.
 pub const DEFAULT: &str = "bolero-sc";
@@ -40,19 +40,19 @@ pub const METHODS: &[Method] = &[
     Method {
         id: "dynammo",
         summary: "a linear dynamical system as Li et al. published it in 2009; for comparison",
-        options: &["frame", "hidden", "iterations", "seed"],
-        build: |options| dynamical_system(LdsFillerParams::dynammo(), options),
+        options: &["frame", "hidden", "iterations", "seed", "borders"],
+        build: |options| dynamical_system(LdsFillerParams::dynammo(), Borders::Keep, options),
     },
     Method {
         id: "lds",
         summary: "a linear dynamical system by exact EM; tells how sure it is; needs no bones",
-        options: &["frame", "hidden", "iterations", "seed"],
-        build: |options| dynamical_system(LdsFillerParams::default(), options),
+        options: &["frame", "hidden", "iterations", "seed", "borders"],
+        build: |options| dynamical_system(LdsFillerParams::default(), Borders::Join, options),
     },
     Method {
         id: "bolero-sc",
         summary: "a linear dynamical system that keeps bone lengths; for long gaps of several markers",
-        options: &["bones", "lambda", "frame", "hidden", "iterations", "seed"],
+        options: &["bones", "lambda", "frame", "hidden", "iterations", "seed", "borders"],
         build: soft_bones,
     },
 ];
@@ -94,9 +94,17 @@ pub fn build(id: &str, options: &Options) -> Result<Box<dyn GapFiller>, BuildErr
 
 fn dynamical_system(
     defaults: LdsFillerParams,
+    borders: Borders,
     options: &Options,
 ) -> Result<Box<dyn GapFiller>, FillError> {
-    Ok(Box::new(LdsFiller::new(model(defaults, options))?))
+    Ok(bordered(LdsFiller::new(model(defaults, options))?, options.borders.unwrap_or(borders)))
+}
+
+fn bordered(filler: impl GapFiller + 'static, borders: Borders) -> Box<dyn GapFiller> {
+    match borders {
+        Borders::Join => Box::new(Joined::new(filler)),
+        Borders::Keep => Box::new(filler),
+    }
 }
 
 fn soft_bones(options: &Options) -> Result<Box<dyn GapFiller>, FillError> {
@@ -106,12 +114,13 @@ fn soft_bones(options: &Options) -> Result<Box<dyn GapFiller>, FillError> {
         Bones::None => bolero_sc::Bones::Given(BoneSet::default()),
         Bones::Given(bones) => bolero_sc::Bones::Given(bones.clone()),
     };
-    Ok(Box::new(BoleroSc::new(BoleroScParams {
+    let filler = BoleroSc::new(BoleroScParams {
         model: model(defaults.model, options),
         lambda: options.lambda.unwrap_or(defaults.lambda),
         bones,
         ..defaults
-    })?))
+    })?;
+    Ok(bordered(filler, options.borders.unwrap_or(Borders::Join)))
 }
 
 fn model(defaults: LdsFillerParams, options: &Options) -> LdsFillerParams {

@@ -6,7 +6,7 @@ use std::{
 
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
-use gapfill::{Bones, Coordinates, Edges, Options};
+use gapfill::{Bones, Borders, Coordinates, Edges, Options};
 use mocap_core::{BoneSet, Filled, Refusal, Take};
 use mocap_io::{Edit, Format, MarkerFile, encode_markers, read_bones};
 use mocap_report::{FillSummary, PlotInput, TakeSummary, html_page, render_png, render_svg};
@@ -84,8 +84,19 @@ struct MethodArgs {
     /// What becomes of gaps at the start or end of the take, for methods that interpolate
     #[arg(long, value_enum, default_value = "refuse")]
     edges: EdgesArg,
+    /// What becomes of the step at the borders of a gap [default: the method's own choice]
+    #[arg(long, value_enum)]
+    borders: Option<BordersArg>,
     #[command(flatten)]
     sets: MarkerSetArgs,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum BordersArg {
+    /// The fill is shifted to join the measured samples
+    Join,
+    /// The fill stays as the method left it
+    Keep,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -196,7 +207,8 @@ impl Fill {
             "frame": self.method.frame.map(|f| format!("{f:?}").to_lowercase()),
             "hidden": self.method.hidden, "lambda": self.method.lambda,
             "iterations": self.method.iterations, "seed": self.method.seed,
-            "edges": format!("{:?}", self.method.edges).to_lowercase(), "max_gap_s": self.max_gap,
+            "edges": format!("{:?}", self.method.edges).to_lowercase(),
+            "borders": self.method.borders.map(|b| format!("{b:?}").to_lowercase()), "max_gap_s": self.max_gap,
         });
         Ok(object)
     }
@@ -245,6 +257,10 @@ impl MethodArgs {
                 EdgesArg::Refuse => Edges::Refuse,
                 EdgesArg::Hold => Edges::Hold,
             },
+            borders: self.borders.map(|borders| match borders {
+                BordersArg::Join => Borders::Join,
+                BordersArg::Keep => Borders::Keep,
+            }),
         })
     }
 }

@@ -1,0 +1,118 @@
+use std::ops::ControlFlow;
+
+use mocap_core::{
+    CellState, Estimates, FillError, Filled, Gap, GapFiller, IterReport, Take,
+    geometry::{add, scale, sub},
+};
+use ndarray::Array2;
+
+/// What becomes of the step between the measured samples beside a gap and the fill.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Borders {
+    /// The fill is shifted so that it joins them.
+    Join,
+    /// It stays as the method left it.
+    Keep,
+}
+
+/// A filler whose fills join the measured samples on either side.
+///
+/// A model that explains a whole take misses each single sample by a little, and so its fill stands
+/// beside the samples around the gap. The step at each border, which is the move across it less the
+/// mean of the moves before and after, is taken out at the border and linearly less towards the other
+/// side; a gap with one side is shifted as a whole. Bone lengths may change by as much.
+#[derive(Debug, Clone)]
+pub struct Joined<F> {
+    inner: F,
+}
+
+impl<F: GapFiller> Joined<F> {
+    /// Joins what `inner` fills.
+    pub fn new(inner: F) -> Self {
+        Self { inner }
+    }
+}
+
+impl<F: GapFiller> GapFiller for Joined<F> {
+    fn name(&self) -> &str {
+        self.inner.name()
+    }
+
+    fn fill_observed(
+        &self,
+        take: &Take,
+        observer: &mut dyn FnMut(&IterReport) -> ControlFlow<()>,
+    ) -> Result<Filled, FillError> {
+        let filled = self.inner.fill_observed(take, observer)?;
+        Ok(join(take, &filled)?)
+    }
+}
+
+/// The same fill with its border steps taken out.
+fn join(input: &Take, filled: &Filled) -> Result<Filled, mocap_core::CoreError> {
+    let take = filled.take();
+    let mut positions = take.positions().to_owned();
+    for gap in filled.gaps() {
+        if filled.state(gap.frames.start, gap.marker) != CellState::Filled {
+            continue;
+        }
+        for (t, shift) in gap.frames.clone().zip(shifts(take, &gap)) {
+            for (axis, c) in shift.into_iter().enumerate() {
+                positions[(t, gap.marker, axis)] -= c;
+            }
+        }
+    }
+    let sigma = |(t, m)| filled.sigma_m(t, m).unwrap_or(f64::NAN);
+    let sigma_m = Array2::from_shape_fn((take.frames(), take.marker_count()), sigma);
+    let estimates = Estimates { positions, sigma_m: Some(sigma_m) };
+    Filled::merge(input, estimates, filled.report().clone())
+}
+
+/// What to take off each frame of a gap, in metres.
+fn shifts(take: &Take, gap: &Gap) -> Vec<[f64; 3]> {
+    let single = gap.len() == 1;
+    let entry = Step::at(take, gap.marker, gap.frames.start);
+    let exit = Step::at(take, gap.marker, gap.frames.end);
+    // In a gap of one frame the move on its far side shows the same offset once more.
+    let entry = entry.map(|s| s.offset(if single { s.later_share } else { 0.0 }));
+    let exit = exit.map(|s| scale(-1.0, s.offset(if single { 1.0 - s.later_share } else { 0.0 })));
+    let last = gap.len().saturating_sub(1);
+    let share = |k: usize| if last == 0 { 0.5 } else { k as f64 / last as f64 };
+    let at = |k: usize| match (entry, exit) {
+        (Some(entry), Some(exit)) => add(scale(1.0 - share(k), entry), scale(share(k), exit)),
+        (Some(only), None) | (None, Some(only)) => only,
+        (None, None) => [0.0; 3],
+    };
+    (0..gap.len()).map(at).collect()
+}
+
+/// The move across a border, less the usual move beside it.
+struct Step {
+    step: [f64; 3],
+    /// Share of the later move in the usual one: 0, ½ or 1.
+    later_share: f64,
+}
+
+impl Step {
+    /// The step from the frame before `border` to the frame at it.
+    fn at(take: &Take, marker: usize, border: usize) -> Option<Self> {
+        let at = |t: Option<usize>| {
+            t.filter(|&t| t < take.frames()).and_then(|t| take.position(t, marker))
+        };
+        let (before, here) = (at(border.checked_sub(1))?, at(Some(border))?);
+        let earlier = at(border.checked_sub(2)).map(|p| sub(before, p));
+        let later = at(Some(border + 1)).map(|p| sub(p, here));
+        let (usual, later_share) = match (earlier, later) {
+            (Some(p), Some(q)) => (scale(0.5, add(p, q)), 0.5),
+            (Some(earlier), None) => (earlier, 0.0),
+            (None, Some(later)) => (later, 1.0),
+            (None, None) => return None,
+        };
+        Some(Self { step: sub(sub(here, before), usual), later_share })
+    }
+
+    /// The offset of the fill that shows as this step, if `echo` of it shows in the usual move too.
+    fn offset(&self, echo: f64) -> [f64; 3] {
+        scale(1.0 / (1.0 + echo), self.step)
+    }
+}
