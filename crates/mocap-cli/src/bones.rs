@@ -5,8 +5,7 @@ use clap::Args;
 use gapfill::Bones as Choice;
 use mocap_io::write_bones;
 
-use crate::say::say;
-use crate::{files::ReadArgs, marker_sets::MarkerSetArgs};
+use crate::{files::ReadArgs, marker_sets::MarkerSetArgs, say::say};
 
 /// List the bones of a recording: marker pairs a fixed distance apart, with their lengths
 ///

@@ -8,10 +8,11 @@ use mocap_io::write_atomic;
 use mocap_report::{PlotInput, render_png, render_svg};
 use mocap_synth::Activity;
 
-use crate::say::say;
 use crate::{
     files::{ReadArgs, create_folder},
-    fill, synth,
+    fill,
+    say::say,
+    synth,
 };
 
 /// See it work: hide two markers of a runner, fill them by several methods, and plot the result

@@ -13,11 +13,11 @@ use mocap_report::{FillSummary, PlotInput, TakeSummary, html_page, render_png, r
 use serde_json::json;
 use sha2::{Digest, Sha256};
 
-use crate::say::say;
 use crate::{
     files::{OutputArgs, ReadArgs, create_folder},
     marker_sets::MarkerSetArgs,
     progress::Progress,
+    say::say,
 };
 
 const SIDECAR: &str = ".fill.json";

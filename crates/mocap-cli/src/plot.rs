@@ -6,10 +6,10 @@ use gapfill::Bones;
 use mocap_io::MarkerFile;
 use mocap_report::{FigureFormat, PlotInput, plot_take};
 
-use crate::say::say;
 use crate::{
     files::{OutputArgs, ReadArgs},
     marker_sets::MarkerSetArgs,
+    say::say,
 };
 
 /// Draw trajectories with their filled parts marked, bone lengths and the gap timeline
