@@ -2,7 +2,9 @@ use std::sync::Arc;
 
 use baselines::{CubicSpline, Linear};
 use bolero_sc::{BoleroSc, BoleroScParams};
+use edm_mds::Edm;
 use lds_kalman::filler::{self, LdsFiller, LdsFillerParams};
+use locality_ridge::LocalRidge;
 use mocap_core::{BoneRule, BoneSet, FillError, GapFiller, MarkerKnowledge, MarkerSet};
 use thiserror::Error;
 
@@ -36,6 +38,18 @@ pub const METHODS: &[Method] = &[
         summary: "a smooth curve through each marker by itself; for gaps up to 0.2 s, and when all markers are gone",
         options: &["edges"],
         build: |options| Ok(Box::new(CubicSpline { edges: options.edges })),
+    },
+    Method {
+        id: "edm",
+        summary: "distances to six stable neighbours, interpolated across the gap; the locality method before its network",
+        options: &[],
+        build: |_| Ok(Box::new(Edm::default())),
+    },
+    Method {
+        id: "ridge",
+        summary: "regression on stable neighbours in a frame that moves with them; the most accurate while neighbours are seen; tells how sure it is",
+        options: &[],
+        build: |_| Ok(Box::new(LocalRidge::default())),
     },
     Method {
         id: "dynammo",

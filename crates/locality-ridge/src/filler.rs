@@ -18,12 +18,12 @@ use crate::{
 ///    the variance of their distance to the missing marker. The first `core` carry a local frame,
 ///    the first `regressors` are regressed on.
 /// 2. Frames that show the marker and all regressors train the regression of its local coordinates
-///    on theirs.
+///    on theirs. Predictions lie at most three times as far from the mean as they do, or 5 cm.
 /// 3. The regression's error at the borders is carried across the gap ([`Residual`](crate::Residual)),
 ///    so the fill meets the observed samples.
 ///
-/// Where fewer than four candidates are seen throughout, the gap is cut into segments with constant
-/// neighbours; the step between two segments is spread over 0.1 s on either side. With
+/// Where fewer than four near candidates are seen throughout, the gap is cut into segments with
+/// constant neighbours; the step between two segments is spread over 0.1 s on either side. With
 /// fewer than three neighbours, or neighbours on a line, the local frame is their centre and does
 /// not turn. Frames that show no neighbour at all are bridged by a straight line for up to 0.1 s;
 /// gaps with a longer black-out stay open.
@@ -31,7 +31,8 @@ use crate::{
 /// Each filled sample has a standard deviation: the root mean square of the 3-D error that the
 /// regression makes on eight runs of training frames predicted without themselves, less what is
 /// known of it from the borders. It grows from zero at a border at the rate at which those errors
-/// change over time.
+/// change over time. In gaps that are cut it leaves out what the joints add, and is too small where few
+/// frames are left to learn from.
 ///
 /// # Cost
 /// Linear in the frames of the take for each set of neighbours; memory too.

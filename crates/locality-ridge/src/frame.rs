@@ -2,7 +2,7 @@
 
 use mocap_core::{
     Rotation,
-    geometry::{add, dot, scale, sub},
+    geometry::{add, best_rotation, dot, scale, sub, symmetric_eigen},
 };
 
 /// Singular values of a pose below this share of the largest leave the turn about a line undefined.
@@ -97,89 +97,10 @@ fn centroid(points: &[[f64; 3]]) -> [f64; 3] {
     scale(1.0 / points.len().max(1) as f64, sum)
 }
 
-/// The rotation `R` that makes Σ q · R p largest, given the sums of `p[a] · q[b]`: the dominant
-/// eigenvector of the matrix of sums of products in [Horn87].
-fn best_rotation(covariance: &[[f64; 3]; 3]) -> Rotation {
-    let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = *covariance;
-    let matrix = [
-        [xx + yy + zz, yz - zy, zx - xz, xy - yx],
-        [yz - zy, xx - yy - zz, xy + yx, zx + xz],
-        [zx - xz, xy + yx, yy - xx - zz, yz + zy],
-        [xy - yx, zx + xz, yz + zy, zz - xx - yy],
-    ];
-    let (values, vectors) = symmetric_eigen(matrix);
-    let top = (1..4).fold(0, |best, k| if values[k] > values[best] { k } else { best });
-    let q = vectors.map(|row| row[top]);
-    Rotation::from_quaternion(q[0], [q[1], q[2], q[3]]).unwrap_or(Rotation::IDENTITY)
-}
-
-/// Eigenvalues and eigenvectors (as columns) of a small symmetric matrix, by cyclic Jacobi rotations.
-fn symmetric_eigen<const N: usize>(mut a: [[f64; N]; N]) -> ([f64; N], [[f64; N]; N]) {
-    const SWEEPS: usize = 30;
-    let mut vectors = [[0.0; N]; N];
-    for (k, row) in vectors.iter_mut().enumerate() {
-        row[k] = 1.0;
-    }
-    let total: f64 = a.iter().flatten().map(|x| x * x).sum();
-    for _ in 0..SWEEPS {
-        let off: f64 =
-            (0..N).flat_map(|p| (0..p).map(move |q| (p, q))).map(|(p, q)| a[p][q].powi(2)).sum();
-        // Entries this small move no eigenvector by a rounding.
-        if off <= total * 1e-34 || !off.is_finite() {
-            break;
-        }
-        for p in 0..N {
-            for q in p + 1..N {
-                annihilate(&mut a, &mut vectors, p, q);
-            }
-        }
-    }
-    (std::array::from_fn(|k| a[k][k]), vectors)
-}
-
-/// One Jacobi rotation that makes `a[p][q]` zero.
-fn annihilate<const N: usize>(
-    a: &mut [[f64; N]; N],
-    vectors: &mut [[f64; N]; N],
-    p: usize,
-    q: usize,
-) {
-    if a[p][q].abs() <= f64::MIN_POSITIVE {
-        return;
-    }
-    let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
-    let tangent = theta.signum() / (theta.abs() + theta.hypot(1.0));
-    let cosine = 1.0 / tangent.hypot(1.0);
-    let sine = tangent * cosine;
-    for row in a.iter_mut().chain(vectors.iter_mut()) {
-        let (x, y) = (row[p], row[q]);
-        row[p] = cosine * x - sine * y;
-        row[q] = sine * x + cosine * y;
-    }
-    let (x, y) = (a[p], a[q]);
-    for k in 0..N {
-        a[p][k] = cosine * x[k] - sine * y[k];
-        a[q][k] = sine * x[k] + cosine * y[k];
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use mocap_core::geometry::distance;
-
-    #[test]
-    fn eigenvectors_rebuild_the_matrix() {
-        let a = [[2.0, -1.0, 0.3], [-1.0, 0.5, 0.2], [0.3, 0.2, -1.0]];
-        let (values, v) = symmetric_eigen(a);
-        for i in 0..3 {
-            for j in 0..3 {
-                let rebuilt: f64 = (0..3).map(|k| v[i][k] * values[k] * v[j][k]).sum();
-                // Entries of order one after about twenty rotations.
-                assert!((rebuilt - a[i][j]).abs() < 1e-14);
-            }
-        }
-    }
 
     #[test]
     fn a_rigid_motion_leaves_local_coordinates() {

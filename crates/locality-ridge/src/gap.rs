@@ -21,9 +21,6 @@ const BLEND_S: f64 = 0.1;
 /// Frames without any neighbour are bridged by a straight line if they last no longer.
 const BRIDGE_S: f64 = 0.1;
 
-/// What a black-out leaves: no neighbour to predict from.
-const NO_NEIGHBOUR: Refusal = Refusal::NotFinite;
-
 /// The filled frames of a gap.
 pub(crate) struct Bridge {
     pub positions: Vec<[f64; 3]>,
@@ -48,7 +45,7 @@ struct Step {
 
 impl<'a> MarkerFiller<'a> {
     pub fn new(take: &'a Take, params: &'a LocalRidgeParams, marker: usize) -> Self {
-        let ranking = rank(take, marker, params.min_training);
+        let ranking = rank(take, marker, params);
         Self { take, params, marker, ranking, trained: Vec::new() }
     }
 
@@ -62,7 +59,7 @@ impl<'a> MarkerFiller<'a> {
         let predicts =
             |(t, step): (usize, &Option<Step>)| gap.frames.contains(&t) && step.is_some();
         if !span.clone().zip(&steps).any(predicts) {
-            return Err(NO_NEIGHBOUR);
+            return Err(Refusal::NoNeighbour);
         }
         let mut path = Path::through(self, &span, &steps);
         path.join(&steps, BLEND_S * self.take.rate_hz());
@@ -70,7 +67,7 @@ impl<'a> MarkerFiller<'a> {
         let known = |t: usize| self.take.position(t, self.marker);
         let bordered: Vec<Option<[f64; 3]>> =
             span.clone().zip(&path.places).map(|(t, place)| known(t).or(*place)).collect();
-        let places = bridge_holes(&bordered, longest).ok_or(NO_NEIGHBOUR)?;
+        let places = bridge_holes(&bordered, longest).ok_or(Refusal::NoNeighbour)?;
         let inside = gap.frames.start - span.start..gap.frames.end - span.start;
         let positions = places[inside.clone()].to_vec();
         if !positions.iter().flatten().all(|c| c.is_finite()) {
@@ -82,7 +79,8 @@ impl<'a> MarkerFiller<'a> {
     /// Predictions for the frames of `span`, `None` where no neighbour is seen.
     fn predict(&mut self, gap: &Range<usize>, span: &Range<usize>) -> Vec<Option<Step>> {
         let mut steps = Vec::with_capacity(span.len());
-        for segment in segments(self.take, &self.ranking, gap, span, self.params.core) {
+        let near = self.params.regressors.max(2 * self.params.core);
+        for segment in segments(self.take, &self.ranking, gap, span, near) {
             let predictor = self.predictor(&segment.usable);
             for t in segment.frames {
                 steps.push(predictor.as_ref().map(|predictor| Step {
@@ -113,8 +111,6 @@ impl<'a> MarkerFiller<'a> {
 struct Path {
     places: Vec<Option<[f64; 3]>>,
     sigma_m: Vec<f64>,
-    /// Whether the first and the last frame are observed borders, which must not move.
-    pinned: [bool; 2],
 }
 
 impl Path {
@@ -128,13 +124,12 @@ impl Path {
         };
         let left = carry(steps, 0..span.len(), error(0));
         let right = carry(steps, (0..span.len()).rev(), error(last));
-        let mut path = Self {
-            places: vec![None; span.len()],
-            sigma_m: vec![f64::NAN; span.len()],
-            pinned: [0, last].map(|i| take.is_observed(span.start + i, filler.marker)),
-        };
+        let mut path = Self { places: vec![None; span.len()], sigma_m: vec![f64::NAN; span.len()] };
         for (i, step) in steps.iter().enumerate() {
-            let Some(Step { predictor, prediction }) = step else { continue };
+            let Some(Step { predictor, prediction }) = step else {
+                path.places[i] = take.position(span.start + i, filler.marker);
+                continue;
+            };
             let (before, after) = (left[i].map(|_| i), right[i].map(|_| last - i));
             let carried = weights(filler.params.residual, take.rate_hz(), before, after);
             let place = add(prediction.place, weigh(&carried, left[i], right[i]));
@@ -147,7 +142,7 @@ impl Path {
     /// Spreads the step between two adjoining segments over the frames next to it, up to `blend`
     /// frames on either side, so that the path goes on there as fast as it came.
     fn join(&mut self, steps: &[Option<Step>], blend: f64) {
-        let runs = runs(steps);
+        let runs = runs(steps, &self.places);
         let joints = runs.windows(2).filter(|pair| pair[0].end == pair[1].start);
         let shifts: Vec<(Range<usize>, Range<usize>, [f64; 3])> = joints
             .filter_map(|pair| {
@@ -156,15 +151,12 @@ impl Path {
             })
             .collect();
         for (before, after, excess) in shifts {
-            let still = [
-                self.pinned[0] && before == (0..1),
-                self.pinned[1] && after == (steps.len() - 1..steps.len()),
-            ];
-            let shares = match still {
-                [false, false] => [0.5, 0.5],
-                [true, false] => [0.0, 1.0],
-                [false, true] => [1.0, 0.0],
-                [true, true] => [0.0, 0.0],
+            // A single frame has no room to fade, and a border alone must not move.
+            let shares = match (before.len() > 1, after.len() > 1) {
+                (true, true) => [0.5, 0.5],
+                (false, true) => [0.0, 1.0],
+                (true, false) => [1.0, 0.0],
+                (false, false) => [0.0, 0.0],
             };
             let joint = after.start;
             for i in before.clone() {
@@ -245,16 +237,16 @@ fn weigh(weights: &Weights, left: Option<[f64; 3]>, right: Option<[f64; 3]>) -> 
     add(part(weights.left, left), part(weights.right, right))
 }
 
-/// Runs of frames predicted by one predictor.
-fn runs(steps: &[Option<Step>]) -> Vec<Range<usize>> {
+/// Runs of frames with one predictor; a border without any is a run of its own.
+fn runs(steps: &[Option<Step>], places: &[Option<[f64; 3]>]) -> Vec<Range<usize>> {
+    let sources: Vec<Option<Option<*const Predictor>>> = steps
+        .iter()
+        .zip(places)
+        .map(|(step, place)| place.map(|_| step.as_ref().map(|step| Rc::as_ptr(&step.predictor))))
+        .collect();
     let mut runs = Vec::new();
     let mut start = 0;
-    let alike = |a: &Option<Step>, b: &Option<Step>| match (a, b) {
-        (Some(a), Some(b)) => Rc::ptr_eq(&a.predictor, &b.predictor),
-        (None, None) => true,
-        _ => false,
-    };
-    for run in steps.chunk_by(alike) {
+    for run in sources.chunk_by(|a, b| a == b) {
         if run[0].is_some() {
             runs.push(start..start + run.len());
         }

@@ -10,14 +10,16 @@ const CONSTANT_M2: f64 = 1e-14;
 /// Markers a local frame needs.
 const RIGID: usize = 3;
 
-/// The markers that are seen together with `target` in at least `min_training` frames, those with
-/// the steadiest distance to it first; of equally steady ones, the nearest first.
-pub(crate) fn rank(take: &Take, target: usize, min_training: usize) -> Vec<usize> {
+/// The markers that are seen together with `target` in at least `min_training` frames, at a distance
+/// that spreads by no more than `max_spread_m`: those with the steadiest distance first; of equally
+/// steady ones, the nearest first.
+pub(crate) fn rank(take: &Take, target: usize, params: &LocalRidgeParams) -> Vec<usize> {
+    let most = params.max_spread_m * params.max_spread_m;
     let mut found: Vec<(f64, f64, usize)> = (0..take.marker_count())
         .filter(|&m| m != target)
         .filter_map(|m| {
-            let (variance, mean) = distance_moments(take, target, m, min_training)?;
-            Some((variance.max(CONSTANT_M2), mean, m))
+            let (variance, mean) = distance_moments(take, target, m, params.min_training)?;
+            (variance <= most).then(|| (variance.max(CONSTANT_M2), mean, m))
         })
         .collect();
     found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
@@ -53,15 +55,28 @@ pub(crate) struct Neighbours {
 impl Neighbours {
     /// Picks from `usable`, which is in order of rank.
     ///
-    /// A marker that would cost too many training frames is passed over: half of the frames that
-    /// show the target are to remain, or, where that leaves no rigid frame, `min_training`.
+    /// A marker that would cost too many training frames is passed over: half of the frames that show
+    /// the target are to remain or, where that leaves fewer markers than the core, a quarter, an
+    /// eighth, a sixteenth. Never fewer than `min_training`.
     pub fn choose(take: &Take, target: usize, usable: &[usize], params: &LocalRidgeParams) -> Self {
         let seen = take.observed().marker(target).iter().filter(|&&seen| seen).count();
-        let strict = pick(take, target, usable, params, params.min_training.max(seen / 2));
-        if strict.regressors.len() < RIGID.min(usable.len()) {
-            return pick(take, target, usable, params, params.min_training);
+        let pick = |share: usize| {
+            let least = params.min_training.max(seen / share);
+            pick(take, target, usable, params, least)
+        };
+        let mut best = pick(2);
+        for share in [4, 8, 16, usize::MAX] {
+            let rigid = best.regressors.len() >= RIGID.min(usable.len());
+            let full = best.regressors.len() >= params.core.min(usable.len());
+            if full || (rigid && share == usize::MAX) {
+                break;
+            }
+            let next = pick(share);
+            if next.regressors.len() > best.regressors.len() {
+                best = next;
+            }
         }
-        strict
+        best
     }
 
     /// The frame whose pose local frames refer to.

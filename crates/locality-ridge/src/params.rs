@@ -46,13 +46,26 @@ pub struct LocalRidgeParams {
     pub ridge: f64,
     /// How the error at the borders is carried across a gap; a ramp by default.
     pub residual: Residual,
+    /// Largest standard deviation of a neighbour's distance to the marker, positive; 0.5 m by default.
+    /// Markers beyond it belong to another body.
+    ///
+    /// # Units
+    /// Metres.
+    pub max_spread_m: f64,
     /// Frames that must show the marker and its neighbours together, at least 2; 10 by default.
     pub min_training: usize,
 }
 
 impl Default for LocalRidgeParams {
     fn default() -> Self {
-        Self { core: 6, regressors: 6, ridge: 1e-3, residual: Residual::Ramp, min_training: 10 }
+        Self {
+            core: 6,
+            regressors: 6,
+            ridge: 1e-3,
+            residual: Residual::Ramp,
+            max_spread_m: 0.5,
+            min_training: 10,
+        }
     }
 }
 
@@ -62,6 +75,7 @@ impl LocalRidgeParams {
         at_least("regressors", self.regressors, self.core, "at least `core`")?;
         at_least("min_training", self.min_training, 2, "at least 2")?;
         positive("ridge", self.ridge)?;
+        positive("max_spread_m", self.max_spread_m)?;
         match self.residual {
             Residual::Ramp => Ok(()),
             Residual::Exponential { tau_s } => positive("tau_s", tau_s),

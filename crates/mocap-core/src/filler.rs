@@ -108,6 +108,9 @@ pub enum Refusal {
         /// Frames that the method needs.
         needed: usize,
     },
+    /// No other marker is seen that the method could go by.
+    #[error("no other marker is seen to fill it from")]
+    NoNeighbour,
     /// The method's answer was not finite.
     #[error("the method gave no finite position")]
     NotFinite,

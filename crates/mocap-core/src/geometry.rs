@@ -1,5 +1,7 @@
 //! Three-vectors, rotations and rigid transforms.
 
+pub use crate::fit::{best_rotation, symmetric_eigen};
+
 /// `p − q`.
 #[must_use]
 #[inline]

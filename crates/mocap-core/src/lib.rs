@@ -5,6 +5,7 @@ mod bones;
 mod error;
 mod filled;
 mod filler;
+mod fit;
 mod gap;
 pub mod geometry;
 mod holdout;

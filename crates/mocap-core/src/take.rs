@@ -48,13 +48,16 @@ impl Take {
         } else {
             positions.as_standard_layout().into_owned()
         };
-        for ((t, m), &seen) in observed.view().indexed_iter() {
-            let mut p = positions.slice_mut(ndarray::s![t, m, ..]);
+        let cells = positions.rows_mut().into_iter().zip(observed.view());
+        for (cell, (mut p, &seen)) in cells.enumerate() {
             if !seen {
                 p.fill(f64::NAN);
             } else if !p.iter().all(|c| c.is_finite()) {
-                let marker = markers.name(m).to_owned();
-                return Err(CoreError::NotFinite { frame: t, marker });
+                let (frame, marker) = (cell / markers.len(), cell % markers.len());
+                return Err(CoreError::NotFinite {
+                    frame,
+                    marker: markers.name(marker).to_owned(),
+                });
             }
         }
         Ok(Self { markers, rate_hz, positions, observed })

@@ -164,7 +164,6 @@ fn segments_join_without_a_step() {
         (151..249).map(|t| distance(add(p(t - 1), p(t + 1)), scale(2.0, p(t)))).fold(0.0, f64::max)
     };
     let worst = (150..250).map(|t| error(&truth, &filled, t, 0)).fold(0.0, f64::max);
-    println!("bend {} {} worst {worst}", bend(filled.take()), bend(&truth));
     // A bare step would bend the path by the distance of the predictions in a single frame. Spread
     // over 12 frames on either side it bends it by a twentieth of that at most.
     assert!(worst > 0.02);
@@ -260,6 +259,18 @@ fn a_neighbour_that_costs_the_training_is_passed_over() {
     }
 }
 
+/// Markers that stand still while the body goes by say nothing about it.
+#[test]
+fn another_body_is_no_neighbour() {
+    let xyz = Array3::from_shape_fn((FRAMES, 6, 3), |(t, m, a)| {
+        if m < 5 { on_body(t, m, [0.0; 3])[a] + 0.05 * t as f64 } else { 0.3 }
+    });
+    let names = MarkerSet::new((0..6).map(|m| format!("M{m}"))).unwrap();
+    let truth = Take::from_positions(names, 120.0, xyz).unwrap();
+    let filled = fill(&hide(&truth, |t, m| m < 5 && (60..110).contains(&t)));
+    assert_eq!((filled.filled_cells().count(), refusals(&filled).len()), (0, 5));
+}
+
 #[test]
 fn a_marker_seen_too_seldom_is_refused() {
     let filled = fill(&hide(&articulated_take(100, 1), |t, m| m == 0 && t >= 9));
@@ -277,6 +288,7 @@ fn parameters_out_of_range_are_named() {
         ("ridge", LocalRidgeParams { ridge: f64::NAN, ..default }),
         ("tau_s", LocalRidgeParams { residual: fades(-1.0), ..default }),
         ("tau_s", LocalRidgeParams { residual: fades(f64::INFINITY), ..default }),
+        ("max_spread_m", LocalRidgeParams { max_spread_m: -0.1, ..default }),
         ("min_training", LocalRidgeParams { min_training: 1, ..default }),
     ];
     for (name, params) in cases {

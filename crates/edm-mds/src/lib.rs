@@ -1,0 +1,13 @@
+#![doc = include_str!("../README.md")]
+
+mod filler;
+mod gap;
+mod neighbours;
+mod params;
+mod procrustes;
+mod scaling;
+mod solve;
+mod trilateration;
+
+pub use filler::Edm;
+pub use params::{EdmParams, EdmSolver};

@@ -1,0 +1,7 @@
+//! The distance filler against closed forms, its own claims, the shared contract and real takes.
+// Tests may unwrap, print what they skip, and compare exactly.
+#![allow(missing_docs, clippy::unwrap_used, clippy::float_cmp, clippy::print_stdout)]
+
+mod corners;
+mod properties;
+mod real;
