@@ -65,7 +65,10 @@ fn join(input: &Take, filled: &Filled) -> Result<Filled, mocap_core::CoreError> 
     let sigma = |(t, m)| filled.sigma_m(t, m).unwrap_or(f64::NAN);
     let sigma_m = Array2::from_shape_fn((take.frames(), take.marker_count()), sigma);
     let estimates = Estimates { positions, sigma_m: Some(sigma_m) };
-    Filled::merge(input, estimates, filled.report().clone())
+    // Joining moves the bones; what was measured before no longer holds.
+    let mut report = filled.report().clone();
+    report.bones = None;
+    Filled::merge(input, estimates, report)
 }
 
 /// What to take off each frame of a gap, in metres.

@@ -1,6 +1,7 @@
 use std::sync::Arc;
 
 use baselines::{CubicSpline, Linear};
+use bolero_hc::{BoleroHc, BoleroHcParams};
 use bolero_sc::{BoleroSc, BoleroScParams};
 use edm_mds::Edm;
 use lds_kalman::filler::{self, LdsFiller, LdsFillerParams};
@@ -69,6 +70,12 @@ pub const METHODS: &[Method] = &[
         options: &["bones", "lambda", "frame", "hidden", "iterations", "seed", "borders"],
         build: soft_bones,
     },
+    Method {
+        id: "bolero-hc",
+        summary: "the same with exact bone lengths; lists the frames in which they cannot be kept",
+        options: &["bones", "frame", "hidden", "iterations", "seed", "borders"],
+        build: hard_bones,
+    },
 ];
 
 /// Why a method cannot be built.
@@ -135,6 +142,19 @@ fn soft_bones(options: &Options) -> Result<Box<dyn GapFiller>, FillError> {
         ..defaults
     })?;
     Ok(bordered(filler, options.borders.unwrap_or(Borders::Join)))
+}
+
+fn hard_bones(options: &Options) -> Result<Box<dyn GapFiller>, FillError> {
+    let defaults = BoleroHcParams::default();
+    let bones = match &options.bones {
+        Bones::Auto(known) => bolero_hc::Bones::Estimated(BoneRule::Known(known.clone())),
+        Bones::None => bolero_hc::Bones::Given(BoneSet::default()),
+        Bones::Given(bones) => bolero_hc::Bones::Given(bones.clone()),
+    };
+    let model = model(defaults.model, options);
+    let filler = BoleroHc::new(BoleroHcParams { model, bones, ..defaults })?;
+    // Joining a fill at its borders would stretch the bones.
+    Ok(bordered(filler, options.borders.unwrap_or(Borders::Keep)))
 }
 
 fn model(defaults: LdsFillerParams, options: &Options) -> LdsFillerParams {

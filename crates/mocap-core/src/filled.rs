@@ -2,7 +2,10 @@ use std::sync::Arc;
 
 use ndarray::{Array2, Array3};
 
-use crate::{CoreError, FillReport, Gap, Mask, Refusal, Take, filler::Refused, take::check_shape};
+use crate::{
+    BoneReport, BoneSet, CoreError, FillReport, Gap, Mask, Refusal, Take, filler::Refused,
+    take::check_shape,
+};
 
 /// Where a sample of a filled take comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -125,6 +128,13 @@ impl Filled {
     #[must_use]
     pub fn report(&self) -> &FillReport {
         &self.report
+    }
+
+    /// The same fill with its bones measured for the report.
+    #[must_use]
+    pub fn measure_bones(mut self, bones: &BoneSet) -> Self {
+        self.report.bones = Some(BoneReport::measure(&self, bones));
+        self
     }
 
     /// The same fill with one gap left open, and the reason.

@@ -2,7 +2,7 @@ use std::ops::ControlFlow;
 
 use thiserror::Error;
 
-use crate::{CoreError, Filled, Gap, Take};
+use crate::{BoneReport, CoreError, Filled, Gap, Take};
 
 /// Fills the gaps of a take.
 ///
@@ -139,6 +139,8 @@ pub struct FillReport {
     pub objective: Vec<f64>,
     /// Gaps left open.
     pub refusals: Vec<Refused>,
+    /// Which frames keep their bones, for methods that promise exact lengths.
+    pub bones: Option<BoneReport>,
 }
 
 impl FillReport {
@@ -151,6 +153,7 @@ impl FillReport {
             iterations: 0,
             objective: Vec::new(),
             refusals: Vec::new(),
+            bones: None,
         }
     }
 }

@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 mod body_frame;
+mod bone_report;
 mod bones;
 mod error;
 mod filled;
@@ -17,6 +18,7 @@ mod solver;
 mod take;
 
 pub use body_frame::{BodyFrame, BodyMarkers, UpAxis};
+pub use bone_report::{BoneReport, InfeasibleFrame};
 pub use bones::{Bone, BoneRule, BoneSet, RigidPairs};
 pub use error::CoreError;
 pub use filled::{CellState, Estimates, Filled};

@@ -9,4 +9,4 @@ mod table;
 pub use error::ReportError;
 pub use figure::{FigureFormat, MAX_FIGURE_MARKERS, PlotInput, plot_take, render_png, render_svg};
 pub use html::html_page;
-pub use summary::{FillSummary, GapFill, GapSummary, MarkerSummary, TakeSummary};
+pub use summary::{BrokenBones, FillSummary, GapFill, GapSummary, MarkerSummary, TakeSummary};

@@ -23,6 +23,18 @@ pub struct FillSummary {
     pub seconds_per_iteration: Option<f64>,
     /// All gaps of the input, marker by marker and in time order.
     pub gaps: Vec<GapFill>,
+    /// Frames in which a method that promises exact bone lengths could not keep them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub broken_bones: Vec<BrokenBones>,
+}
+
+/// A frame in which not all bones have their length.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BrokenBones {
+    /// Number of the frame.
+    pub frame: i64,
+    /// Largest difference between a distance and the length of its bone in mm.
+    pub residual_mm: f64,
 }
 
 /// What a fill did to one gap.
@@ -44,6 +56,16 @@ pub struct GapFill {
     pub refused: Option<String>,
 }
 
+fn broken_bones(filled: &Filled, first_frame: i64) -> Vec<BrokenBones> {
+    let infeasible = filled.report().bones.iter().flat_map(|bones| &bones.infeasible);
+    infeasible
+        .map(|broken| BrokenBones {
+            frame: file_frame(first_frame, broken.frame),
+            residual_mm: 1e3 * broken.residual_m,
+        })
+        .collect()
+}
+
 impl FillSummary {
     /// Sums up a fill that took `seconds`, of a take whose first frame has the given number in its
     /// file.
@@ -59,6 +81,7 @@ impl FillSummary {
             seconds,
             seconds_per_iteration: (report.iterations > 0).then_some(per_iteration),
             gaps: filled.gaps().into_iter().map(gap).collect(),
+            broken_bones: broken_bones(filled, first_frame),
         }
     }
 
@@ -74,6 +97,12 @@ impl FillSummary {
         );
         if !self.gaps.is_empty() {
             text = text + "\n" + &self.gap_table().to_text();
+        }
+        let worst = self.broken_bones.iter().map(|b| b.residual_mm).reduce(f64::max);
+        if let Some(worst) = worst {
+            let frames = counted(self.broken_bones.len(), "frame");
+            text =
+                text + &format!("\nbones could not be kept in {frames}, by up to {worst:.2} mm\n");
         }
         text
     }
