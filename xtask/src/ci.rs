@@ -16,7 +16,7 @@ use crate::{fixtures, process, setup, tidy};
 /// Run every check and test
 ///
 /// Sets the machine up, then: format, tidy, clippy, fixtures, tests (unit, integration and
-/// documentation), documentation, a run of the demo, and cargo-deny where it is installed. Goes on after
+/// documentation), documentation, a run of the demo and of the benchmark matrix, and cargo-deny where it is installed. Goes on after
 /// a failure, so that one run shows everything; fails if any step did.
 #[derive(Args)]
 pub struct Options {
@@ -76,6 +76,7 @@ impl Session<'_> {
         });
         self.step("fixtures", |session| fixtures::check(session.root).map(|()| Outcome::Passed));
         self.step("demo", |session| demo(session.root).map(|()| Outcome::Passed));
+        self.step("reproduce", |session| reproduce(session.root).map(|()| Outcome::Passed));
         self.step("deny", |session| deny(session.root));
     }
 
@@ -180,6 +181,17 @@ impl Count {
         self.passed += number_before("passed");
         self.failed += number_before("failed");
     }
+}
+
+/// Runs the benchmark matrix on the sample recordings.
+fn reproduce(root: &Path) -> Result<()> {
+    let output = root.join("target/ci-reproduce");
+    if output.exists() {
+        fs::remove_dir_all(&output)?;
+    }
+    let mut matrix = process::cargo(root);
+    matrix.args(["run", "--quiet", "--release", "--locked", "--package", "mocap-repro", "--"]);
+    process::run(matrix.args(["bolero", "--quick", "--out"]).arg(&output))
 }
 
 /// Runs the demo and looks for its plot.

@@ -13,10 +13,10 @@ mod ci;
 mod data;
 mod demo;
 mod fixtures;
-mod later;
 #[path = "../../crates/openblas-src/search.rs"]
 mod openblas;
 mod process;
+mod repro;
 mod setup;
 mod tidy;
 
@@ -46,8 +46,8 @@ enum Task {
     Bench(bench::Options),
     #[command(subcommand)]
     Data(data::Task),
-    ReproducePaper(later::Paper),
-    Leaderboard(later::Board),
+    ReproducePaper(repro::Paper),
+    Leaderboard(repro::Board),
 }
 
 fn main() -> ExitCode {
@@ -68,8 +68,8 @@ fn run(task: &Task) -> anyhow::Result<ExitCode> {
         Task::Fixtures(options) => fixtures::run(&root, options)?,
         Task::Bench(options) => bench::run(&root, options)?,
         Task::Data(task) => data::run(task)?,
-        Task::ReproducePaper(_) => return Ok(later::answer("reproduce-paper")),
-        Task::Leaderboard(_) => return Ok(later::answer("leaderboard")),
+        Task::ReproducePaper(options) => return repro::paper(&root, options),
+        Task::Leaderboard(options) => return repro::leaderboard(&root, options),
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -43,10 +43,10 @@ impl GapFiller for BoleroSc {
         take: &Take,
         observer: &mut dyn FnMut(&IterReport) -> ControlFlow<()>,
     ) -> Result<Filled, FillError> {
-        let BoleroScParams { model, lambda, bones, solver } = &self.params;
+        let BoleroScParams { model, lambda, bones, untied, solver } = &self.params;
         let bones = bones.find(take)?;
         let hook = |columns: &_| {
-            let hook = SoftBones::new(columns, &bones, *lambda, *solver);
+            let hook = SoftBones::new(columns, &bones, *lambda, *solver).with_untied(*untied);
             Ok(Box::new(hook) as Box<dyn lds_kalman::MissingUpdate>)
         };
         fill_with("bolero-sc", take, model, hook, observer)

@@ -4,16 +4,20 @@ use std::collections::HashMap;
 
 use lds_kalman::{MissingUpdate, UpdateContext, filler::Columns};
 use mocap_core::BoneSet;
-use ndarray::{ArrayView2, ArrayViewMut2, Zip};
+use ndarray::{Array2, ArrayView2, ArrayViewMut2, Zip};
 use rayon::prelude::*;
 
 use crate::{
+    params::Untied,
     problem::{End, Problem, Stick},
     solver::{Scratch, Solver},
 };
 
 /// The bones act from this iteration on; the prediction of the first is that of no model yet.
 const FIRST_ITERATION: usize = 2;
+
+/// So many seen markers tell more coordinates than the usual model has hidden dimensions, 16.
+const ENOUGH_SEEN: usize = 6;
 
 /// Chooses the missing markers of each frame so that they are close to the prediction and keep
 /// the bone lengths, softly.
@@ -27,6 +31,7 @@ pub struct SoftBones {
     bones: Vec<Segment>,
     lambda: f64,
     solver: Solver,
+    untied: Untied,
 }
 
 /// A bone between two triples of columns.
@@ -55,7 +60,32 @@ impl SoftBones {
             let ends = [*place.get(&a)?, *place.get(&b)?];
             Some(Segment { ends, length_m: bone.length_m() })
         });
-        Self { bones: segments.collect(), lambda, solver }
+        Self { bones: segments.collect(), lambda, solver, untied: Untied::default() }
+    }
+
+    /// The same hook with this choice about fills that no bone ties to a visible marker.
+    #[must_use]
+    pub fn with_untied(self, untied: Untied) -> Self {
+        Self { untied, ..self }
+    }
+
+    /// The markers whose places count: all where enough are seen, else those that are seen and
+    /// those that bones tie to a seen one, be it over hidden ones.
+    fn tied(&self, seen: &[bool]) -> Vec<bool> {
+        if seen.iter().filter(|&&seen| seen).count() >= ENOUGH_SEEN {
+            return vec![true; seen.len()];
+        }
+        let mut tied = seen.to_vec();
+        let mut grown = true;
+        while grown {
+            grown = false;
+            for [a, b] in self.bones.iter().map(|segment| segment.ends) {
+                if tied[a] != tied[b] {
+                    (tied[a], tied[b], grown) = (true, true, true);
+                }
+            }
+        }
+        tied
     }
 
     /// A plan for each set of missing markers, and which frame has which; frames in which no
@@ -79,7 +109,13 @@ impl SoftBones {
     }
 
     fn plan(&self, seen: &[bool]) -> Plan {
-        let loose = |segment: &&Segment| segment.ends.iter().any(|&k| !seen[k]);
+        let counts = match self.untied {
+            Untied::Missing => self.tied(seen),
+            Untied::Observed => vec![true; seen.len()],
+        };
+        let loose = |segment: &&Segment| {
+            segment.ends.iter().any(|&k| !seen[k]) && segment.ends.iter().all(|&k| counts[k])
+        };
         let segments: Vec<Segment> = self.bones.iter().filter(loose).copied().collect();
         let ends = segments.iter().flat_map(|segment| segment.ends);
         let mut unknown: Vec<usize> = ends.filter(|&k| !seen[k]).collect();
@@ -148,5 +184,19 @@ impl MissingUpdate for SoftBones {
                 (0..3).for_each(|a| row[3 * k + a] = place[a]);
             }
         }
+    }
+
+    fn evidence(&self, mask: ArrayView2<'_, bool>) -> Option<Array2<bool>> {
+        if self.untied == Untied::Observed || self.bones.is_empty() || self.lambda <= 0.0 {
+            return None;
+        }
+        let mut known: HashMap<Vec<bool>, Vec<bool>> = HashMap::new();
+        let mut evidence = mask.to_owned();
+        for mut row in evidence.rows_mut() {
+            let seen: Vec<bool> = row.iter().step_by(3).copied().collect();
+            let tied = known.entry(seen).or_insert_with_key(|seen| self.tied(seen));
+            row.iter_mut().enumerate().for_each(|(j, counts)| *counts = tied[j / 3]);
+        }
+        (!evidence.iter().all(|&counts| counts)).then_some(evidence)
     }
 }

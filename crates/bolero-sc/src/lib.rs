@@ -8,5 +8,5 @@ mod solver;
 
 pub use filler::BoleroSc;
 pub use hook::SoftBones;
-pub use params::{BoleroScParams, Bones};
+pub use params::{BoleroScParams, Bones, Untied};
 pub use solver::Solver;

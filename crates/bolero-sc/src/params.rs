@@ -41,6 +41,19 @@ impl Bones {
     }
 }
 
+/// What becomes of fills that no bone ties to a visible marker, in frames that show fewer than six
+/// markers, where fills count as observed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Untied {
+    /// They are missing: the states are estimated without them, and they take the prediction, as
+    /// in the exact system. EM then starts from the data's subspace, because a random transition
+    /// grows what it predicts through frames that show nothing.
+    #[default]
+    Missing,
+    /// They count as observed too, as published. They then hold on to what filled the gap first.
+    Observed,
+}
+
 /// How [`BoleroSc`](crate::BoleroSc) fills.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoleroScParams {
@@ -56,6 +69,8 @@ pub struct BoleroScParams {
     pub lambda: f64,
     /// Where the bones come from.
     pub bones: Bones,
+    /// What becomes of fills that rest on next to nothing.
+    pub untied: Untied,
     /// How the missing markers of a frame are found.
     pub solver: Solver,
 }
@@ -68,6 +83,7 @@ impl Default for BoleroScParams {
             model: LdsFillerParams { e_step, start, ..LdsFillerParams::default() },
             lambda: 1e6,
             bones: Bones::Auto,
+            untied: Untied::default(),
             solver: Solver::default(),
         }
     }
@@ -81,7 +97,7 @@ impl BoleroScParams {
     pub fn published() -> Self {
         let e_step = EStep::FilledAsObserved;
         let model = LdsFillerParams { e_step, ..LdsFillerParams::published() };
-        Self { model, ..Self::default() }
+        Self { model, untied: Untied::Observed, ..Self::default() }
     }
 
     pub(crate) fn validate(&self) -> Result<(), FillError> {

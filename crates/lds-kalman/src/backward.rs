@@ -52,13 +52,8 @@ impl Backward {
             self.blocks.resize(start + 2 * size, 0.0);
             let (done, new) = self.blocks.split_at_mut(start);
             let later = &done[2 * next * size..][..size];
-            let (covariance, lag) = new.split_at_mut(size);
-            let gain = forward.gain_transposed(steps[t]);
-            kernel::multiply(later, gain, lag, n);
-            kernel::multiply_transposed(gain, lag, covariance, n);
-            kernel::add_scaled(covariance, 1.0, forward.conditional(steps[t]));
-            kernel::symmetrize(covariance, n);
-            let (scale, change) = kernel::magnitude_and_change(covariance, later);
+            let step = EarlierStep { forward, step: steps[t], later, new };
+            let (scale, change) = kernel::fast(n, step);
             settled = same_step && change <= tolerance * scale;
             self.block_of[t] = start / (2 * size);
         }
@@ -95,5 +90,31 @@ impl Backward {
         if let Some((first, count)) = run {
             kernel::add_scaled(out, count as f64, self.half(first, which));
         }
+    }
+}
+
+/// Computes the covariances of a frame from that of the next; its largest entry and the largest
+/// change between the two.
+struct EarlierStep<'a> {
+    forward: &'a Forward,
+    step: usize,
+    later: &'a [f64],
+    new: &'a mut [f64],
+}
+
+impl kernel::Job for EarlierStep<'_> {
+    type Output = (f64, f64);
+
+    #[allow(clippy::inline_always, reason = "the job takes on the vectors of its caller")]
+    #[inline(always)]
+    fn run(self, n: usize) -> (f64, f64) {
+        let Self { forward, step, later, new } = self;
+        let (covariance, lag) = new.split_at_mut(n * n);
+        let gain = forward.gain_transposed(step);
+        kernel::multiply(later, gain, lag, n);
+        kernel::multiply_transposed(gain, lag, covariance, n);
+        kernel::add_scaled(covariance, 1.0, forward.conditional(step));
+        kernel::symmetrize(covariance, n);
+        kernel::magnitude_and_change(covariance, later)
     }
 }

@@ -122,9 +122,9 @@ fn is_symmetric(matrix: ArrayView2<'_, f64>) -> bool {
 fn factor(matrix: &Array2<f64>) -> Option<Array2<f64>> {
     let n = matrix.nrows();
     let flat: Vec<f64> = matrix.iter().copied().collect();
-    let mut lower = vec![0.0; n * n];
-    kernel::cholesky(&flat, &mut lower, n).then_some(())?;
-    Array2::from_shape_vec((n, n), lower).ok()
+    let mut upper = vec![0.0; n * n];
+    kernel::cholesky(&flat, &mut upper, n).then_some(())?;
+    Some(Array2::from_shape_vec((n, n), upper).ok()?.reversed_axes())
 }
 
 /// The symmetric matrix with every eigenvalue raised to at least `floor`.

@@ -104,6 +104,16 @@ pub trait MissingUpdate {
     /// Writes new values for the missing entries of `filled`, `(T, m)`, which holds the present
     /// ones.
     fn update(&mut self, context: &UpdateContext<'_>, filled: ArrayViewMut2<'_, f64>);
+
+    /// The entries that count as observed under [`EStep::FilledAsObserved`], `(T, m)`, for this
+    /// mask; the others are dropped as under [`EStep::Exact`]. `None`: all.
+    ///
+    /// A fill that rests on the prediction alone is no evidence: counted, it would hold on to
+    /// whatever filled the gap first. Where some are dropped, EM starts from the data's subspace.
+    fn evidence(&self, mask: ArrayView2<'_, bool>) -> Option<Array2<bool>> {
+        let _ = mask;
+        None
+    }
 }
 
 /// Fills with what the model predicts, `G E[z]`: the plain linear dynamical system.
@@ -191,12 +201,25 @@ pub fn fit_em(
 ) -> Result<Fit, LdsError> {
     params.validate(observations)?;
     let filled = observations.interpolated();
-    let EmParams { hidden, seed, start, structure, .. } = params;
-    let model = first_model(*start, filled.view(), *hidden, *seed, structure)?;
+    let EmParams { hidden, seed, structure, .. } = params;
+    let evidence = match params.e_step {
+        EStep::FilledAsObserved => hook.evidence(observations.mask()),
+        EStep::Exact | EStep::Dynammo => None,
+    };
+    let evidence =
+        evidence.map(|mask| Observations::new(filled.view(), mask.view())).transpose()?;
+    let pass = match &evidence {
+        Some(evidence) => Inference::new(evidence, *hidden, EStep::Exact),
+        None => Inference::new(observations, *hidden, params.e_step),
+    };
+    // What a random transition predicts grows beyond all bounds in frames without evidence.
+    let start = if evidence.is_some() { Start::Subspace } else { params.start };
+    let model = first_model(start, filled.view(), *hidden, *seed, structure)?;
     let mut loop_state = Loop {
         observations,
+        evidence,
         params,
-        pass: Inference::new(observations, *hidden, params.e_step),
+        pass,
         dynamics: Dynamics::new(&model),
         model,
         prediction: Array2::zeros(filled.dim()),
@@ -217,6 +240,8 @@ pub fn fit_em(
 
 struct Loop<'a> {
     observations: &'a Observations,
+    /// Observed entries and those fills that count as observed, where not all of them do.
+    evidence: Option<Observations>,
     params: &'a EmParams,
     pass: Inference,
     dynamics: Dynamics,
@@ -256,7 +281,12 @@ impl Loop<'_> {
     }
 
     fn estimate(&mut self) -> Option<f64> {
-        self.pass.run(&self.dynamics, self.observations, self.filled.view())
+        let Self { pass, dynamics, filled, .. } = self;
+        let Some(evidence) = &mut self.evidence else {
+            return pass.run(dynamics, self.observations, filled.view());
+        };
+        evidence.set_values(filled.view());
+        pass.run(dynamics, evidence, evidence.values())
     }
 
     fn update_missing(&mut self, hook: &mut dyn MissingUpdate) {
@@ -281,7 +311,8 @@ impl Loop<'_> {
 
     /// M-step and the next E-step; on failure everything is as before and the answer is `false`.
     fn advance(&mut self) -> bool {
-        let statistics = gather(&self.pass, &self.dynamics, self.observations, self.filled.view());
+        let evidence = self.evidence.as_ref().unwrap_or(self.observations);
+        let statistics = gather(&self.pass, &self.dynamics, evidence, self.filled.view());
         let Some(next) = maximize(&statistics, &self.params.structure) else { return false };
         let previous = std::mem::replace(&mut self.dynamics, Dynamics::new(&next));
         if let Some(log_likelihood) = self.estimate() {
@@ -307,7 +338,7 @@ impl Loop<'_> {
             for &j in &group.dimensions {
                 let emission = self.dynamics.emission.row(j).to_vec();
                 for &t in &group.frames {
-                    kernel::apply(self.pass.backward.covariance(t), &emission, &mut spread);
+                    kernel::apply(self.pass.backward.covariance(t), &emission, &mut spread, n);
                     let variance = kernel::dot(&emission, &spread) + self.dynamics.noise[j];
                     deviation[(t, j)] = variance.sqrt();
                 }

@@ -9,7 +9,7 @@ use crate::{dynamics::Dynamics, kernel};
 /// A covariance counts as stationary when no entry changes by more than this times its largest
 /// entry. The change still to come is of the same order as long as the filter forgets, so results
 /// with and without stopping agree to about 1e-12.
-pub(crate) const STATIONARY: f64 = 1e-14;
+pub(crate) const STATIONARY: f64 = 1e-13;
 
 const BLOCKS: usize = 5;
 
@@ -88,10 +88,9 @@ impl Forward {
                 self.step_of.extend(previous);
                 continue;
             }
-            let Some(step) = self.push(dynamics, &information[pattern * size..][..size], previous)
-            else {
-                return false;
-            };
+            let information = &information[pattern * size..][..size];
+            let next = NextStep { forward: self, dynamics, information, previous };
+            let Some(step) = kernel::fast(dynamics.n, next) else { return false };
             settled = same_pattern && previous.is_some_and(|p| self.agree(p, step, tolerance));
             self.step_of.push(step);
         }
@@ -103,59 +102,68 @@ impl Forward {
         change <= tolerance * size
     }
 
-    /// Appends the step that follows `previous`.
-    fn push(
-        &mut self,
-        dynamics: &Dynamics,
-        information: &[f64],
-        previous: Option<usize>,
-    ) -> Option<usize> {
-        let n = self.n;
-        let mut scratch = std::mem::take(&mut self.scratch);
-        let [a, b, c, d] = &mut scratch;
-        match previous {
-            Some(p) => a.copy_from_slice(self.predicted_factor(p)),
-            None => kernel::cholesky(&dynamics.initial_covariance, a, n).then_some(())?,
-        }
-        // With P = L Lᵀ: V = (P⁻¹ + S)⁻¹ = L (I + Lᵀ S L)⁻¹ Lᵀ, whose inner matrix is never worse
-        // conditioned than one plus the signal-to-noise ratio.
-        kernel::multiply(information, a, b, n);
-        kernel::multiply_transposed(a, b, c, n);
-        kernel::symmetrize(c, n);
-        (0..n).for_each(|i| c[i * n + i] += 1.0);
-        kernel::cholesky(c, b, n).then_some(())?;
-        let log_determinant = kernel::log_determinant(b, n);
-        kernel::transpose(a, c, n);
-        kernel::solve_lower(b, c, n, n);
-        kernel::multiply_transposed(c, c, a, n);
-        self.blocks.extend_from_slice(a);
-
-        kernel::multiply(&dynamics.transition, a, b, n);
-        kernel::multiply(b, &dynamics.transition_transposed, c, n);
-        c.iter_mut().zip(&dynamics.state_noise).for_each(|(x, q)| *x += q);
-        kernel::symmetrize(c, n);
-        kernel::cholesky(c, d, n).then_some(())?;
-        self.blocks.extend_from_slice(c);
-        self.blocks.extend_from_slice(d);
-
-        c.copy_from_slice(b);
-        kernel::solve_cholesky(d, c, n, n);
-        self.blocks.extend_from_slice(c);
-        kernel::multiply_transposed(c, b, d, n);
-        d.iter_mut().zip(a.iter()).for_each(|(x, v)| *x = v - *x);
-        kernel::symmetrize(d, n);
-        self.blocks.extend_from_slice(d);
-
-        self.scratch = scratch;
-        self.log_determinants.push(log_determinant);
-        Some(self.log_determinants.len() - 1)
-    }
-
     /// Covariance of the state of `frame` given the frames before it.
     pub(crate) fn predicted_at<'a>(&'a self, frame: usize, dynamics: &'a Dynamics) -> &'a [f64] {
         match frame.checked_sub(1) {
             Some(before) => self.predicted(self.step_of[before]),
             None => &dynamics.initial_covariance,
         }
+    }
+}
+
+/// Appends the step that follows `previous`.
+struct NextStep<'a> {
+    forward: &'a mut Forward,
+    dynamics: &'a Dynamics,
+    information: &'a [f64],
+    previous: Option<usize>,
+}
+
+impl kernel::Job for NextStep<'_> {
+    type Output = Option<usize>;
+
+    #[allow(clippy::inline_always, reason = "the job takes on the vectors of its caller")]
+    #[inline(always)]
+    fn run(self, n: usize) -> Option<usize> {
+        let Self { forward, dynamics, information, previous } = self;
+        let mut scratch = std::mem::take(&mut forward.scratch);
+        let [a, b, c, d] = &mut scratch;
+        match previous {
+            Some(p) => a.copy_from_slice(forward.predicted_factor(p)),
+            None => kernel::cholesky(&dynamics.initial_covariance, a, n).then_some(())?,
+        }
+        // With P = Uᵀ U: V = (P⁻¹ + S)⁻¹ = Uᵀ (I + U S Uᵀ)⁻¹ U, whose inner matrix is never worse
+        // conditioned than one plus the signal-to-noise ratio.
+        kernel::transpose(a, d, n);
+        kernel::multiply(information, d, b, n);
+        kernel::multiply(a, b, c, n);
+        kernel::symmetrize(c, n);
+        (0..n).for_each(|i| c[i * n + i] += 1.0);
+        kernel::cholesky(c, b, n).then_some(())?;
+        let log_determinant = kernel::log_determinant(b, n);
+        c.copy_from_slice(a);
+        kernel::solve_lower(b, c, n, n);
+        kernel::multiply_transposed(c, c, a, n);
+        forward.blocks.extend_from_slice(a);
+
+        kernel::multiply(&dynamics.transition, a, b, n);
+        kernel::multiply(b, &dynamics.transition_transposed, c, n);
+        c.iter_mut().zip(&dynamics.state_noise).for_each(|(x, q)| *x += q);
+        kernel::symmetrize(c, n);
+        kernel::cholesky(c, d, n).then_some(())?;
+        forward.blocks.extend_from_slice(c);
+        forward.blocks.extend_from_slice(d);
+
+        c.copy_from_slice(b);
+        kernel::solve_cholesky(d, c, n, n);
+        forward.blocks.extend_from_slice(c);
+        kernel::multiply_transposed(c, b, d, n);
+        d.iter_mut().zip(a.iter()).for_each(|(x, v)| *x = v - *x);
+        kernel::symmetrize(d, n);
+        forward.blocks.extend_from_slice(d);
+
+        forward.scratch = scratch;
+        forward.log_determinants.push(log_determinant);
+        Some(forward.log_determinants.len() - 1)
     }
 }

@@ -94,7 +94,7 @@ impl Inference {
     ) -> Option<f64> {
         let log_likelihood = self.filter(dynamics, observations, filled)?;
         self.backward.run(self.n, &self.forward, self.stationary);
-        self.smooth_means();
+        kernel::fast(self.n, SmoothMeans { pass: self });
         self.smoothed.iter().all(|x| x.is_finite()).then_some(log_likelihood)
     }
 
@@ -113,7 +113,7 @@ impl Inference {
         let Self { forward, information, covariance_pattern, stationary, .. } = self;
         forward.run(dynamics, information, covariance_pattern, *stationary).then_some(())?;
         general_mat_mul(1.0, &values, &dynamics.weighted_emission, 0.0, &mut self.weighted);
-        let explained = self.filter_means(dynamics);
+        let explained = kernel::fast(self.n, FilterMeans { pass: self, dynamics });
         let log_likelihood = self.log_likelihood(dynamics, observations, values, explained);
         log_likelihood.is_finite().then_some(log_likelihood)
     }
@@ -124,58 +124,6 @@ impl Inference {
             dynamics.add_information(pattern, &mut self.information);
         }
         dynamics.add_complete_information(&mut self.information);
-    }
-
-    /// The means of the filter; returns the part of the squared innovations that the states
-    /// explain.
-    ///
-    /// Implements [Li10] Eq. (17) and (21) in the information form.
-    fn filter_means(&mut self, dynamics: &Dynamics) -> f64 {
-        let (n, size) = (self.n, self.n * self.n);
-        let (mut innovation, mut correction) = (vec![0.0; n], vec![0.0; n]);
-        let mut explained = 0.0;
-        let weighted = flat(&self.weighted);
-        let predicted = flat_mut(&mut self.predicted);
-        let filtered = flat_mut(&mut self.filtered);
-        for t in 0..self.frames {
-            let now = t * n..(t + 1) * n;
-            let prediction = &mut predicted[now.clone()];
-            if t == 0 {
-                prediction.copy_from_slice(&dynamics.initial_mean);
-            } else {
-                let before = &filtered[(t - 1) * n..t * n];
-                kernel::apply(&dynamics.transition_transposed, before, prediction);
-            }
-            let information = &self.information[self.mean_pattern[t] * size..][..size];
-            kernel::apply(information, prediction, &mut innovation);
-            innovation.iter_mut().zip(&weighted[now.clone()]).for_each(|(i, b)| *i = b - *i);
-            let covariance = self.forward.filtered(self.forward.step_of()[t]);
-            kernel::apply(covariance, &innovation, &mut correction);
-            explained += kernel::dot(&innovation, &correction);
-            for ((f, p), c) in filtered[now].iter_mut().zip(prediction).zip(&correction) {
-                *f = *p + c;
-            }
-        }
-        explained
-    }
-
-    /// The means of the smoother.
-    ///
-    /// Implements [Li10] Eq. (26).
-    fn smooth_means(&mut self) {
-        let n = self.n;
-        self.smoothed.assign(&self.filtered);
-        let smoothed = flat_mut(&mut self.smoothed);
-        let predicted = flat(&self.predicted);
-        let mut change = vec![0.0; n];
-        for t in (0..self.frames.saturating_sub(1)).rev() {
-            let (head, tail) = smoothed.split_at_mut((t + 1) * n);
-            for ((c, s), p) in change.iter_mut().zip(tail).zip(&predicted[(t + 1) * n..]) {
-                *c = *s - p;
-            }
-            let gain = self.forward.gain_transposed(self.forward.step_of()[t]);
-            kernel::add_applied(gain, &change, &mut head[t * n..]);
-        }
     }
 
     /// The log-likelihood from the innovations, with what the states explain taken off.
@@ -244,4 +192,77 @@ fn flat(array: &Array2<f64>) -> &[f64] {
 
 fn flat_mut(array: &mut Array2<f64>) -> &mut [f64] {
     array.as_slice_mut().expect("buffers are made in standard layout")
+}
+
+/// The means of the filter; answers the part of the squared innovations that the states explain.
+///
+/// Implements [Li10] Eq. (17) and (21) in the information form.
+struct FilterMeans<'a> {
+    pass: &'a mut Inference,
+    dynamics: &'a Dynamics,
+}
+
+impl kernel::Job for FilterMeans<'_> {
+    type Output = f64;
+
+    #[allow(clippy::inline_always, reason = "the job takes on the vectors of its caller")]
+    #[inline(always)]
+    fn run(self, n: usize) -> f64 {
+        let Self { pass, dynamics } = self;
+        let size = n * n;
+        let (mut innovation, mut correction) = (vec![0.0; n], vec![0.0; n]);
+        let mut explained = 0.0;
+        let weighted = flat(&pass.weighted);
+        let predicted = flat_mut(&mut pass.predicted);
+        let filtered = flat_mut(&mut pass.filtered);
+        for t in 0..pass.frames {
+            let now = t * n..(t + 1) * n;
+            let prediction = &mut predicted[now.clone()];
+            if t == 0 {
+                prediction.copy_from_slice(&dynamics.initial_mean);
+            } else {
+                let before = &filtered[(t - 1) * n..t * n];
+                kernel::apply(&dynamics.transition_transposed, before, prediction, n);
+            }
+            let information = &pass.information[pass.mean_pattern[t] * size..][..size];
+            kernel::apply(information, prediction, &mut innovation, n);
+            innovation.iter_mut().zip(&weighted[now.clone()]).for_each(|(i, b)| *i = b - *i);
+            let covariance = pass.forward.filtered(pass.forward.step_of()[t]);
+            kernel::apply(covariance, &innovation, &mut correction, n);
+            explained += kernel::dot(&innovation, &correction);
+            for ((f, p), c) in filtered[now].iter_mut().zip(prediction).zip(&correction) {
+                *f = *p + c;
+            }
+        }
+        explained
+    }
+}
+
+/// The means of the smoother.
+///
+/// Implements [Li10] Eq. (26).
+struct SmoothMeans<'a> {
+    pass: &'a mut Inference,
+}
+
+impl kernel::Job for SmoothMeans<'_> {
+    type Output = ();
+
+    #[allow(clippy::inline_always, reason = "the job takes on the vectors of its caller")]
+    #[inline(always)]
+    fn run(self, n: usize) {
+        let pass = self.pass;
+        pass.smoothed.assign(&pass.filtered);
+        let smoothed = flat_mut(&mut pass.smoothed);
+        let predicted = flat(&pass.predicted);
+        let mut change = vec![0.0; n];
+        for t in (0..pass.frames.saturating_sub(1)).rev() {
+            let (head, tail) = smoothed.split_at_mut((t + 1) * n);
+            for ((c, s), p) in change.iter_mut().zip(tail).zip(&predicted[(t + 1) * n..]) {
+                *c = *s - p;
+            }
+            let gain = pass.forward.gain_transposed(pass.forward.step_of()[t]);
+            kernel::add_applied(gain, &change, &mut head[t * n..], n);
+        }
+    }
 }

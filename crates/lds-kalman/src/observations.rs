@@ -118,6 +118,14 @@ impl Observations {
         self.mask.view()
     }
 
+    /// Takes new values for the observed entries, `(T, m)`.
+    pub(crate) fn set_values(&mut self, values: ArrayView2<'_, f64>) {
+        ndarray::Zip::from(&mut self.values)
+            .and(values)
+            .and(&self.mask)
+            .for_each(|slot, &value, &seen| *slot = if seen { value } else { 0.0 });
+    }
+
     pub(crate) fn patterns(&self) -> &[Pattern] {
         &self.patterns
     }

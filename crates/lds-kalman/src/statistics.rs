@@ -108,13 +108,16 @@ pub fn m_step(statistics: &Statistics, structure: &NoiseStructure) -> Result<Lds
 
 /// Copies the observed entries over whatever a fill holds there.
 pub(crate) fn restore_observed(observations: &Observations, filled: &mut Array2<f64>) {
-    ndarray::Zip::from(filled).and(observations.values()).and(observations.mask()).for_each(
-        |slot, &value, &seen| {
-            if seen {
-                *slot = value;
-            }
-        },
-    );
+    let observed = observations.values();
+    let rows = filled.rows_mut().into_iter().zip(observed.rows());
+    for ((mut row, values), &pattern) in rows.zip(observations.pattern_of()) {
+        let pattern = &observations.patterns()[pattern];
+        if pattern.complete {
+            row.assign(&values);
+        } else {
+            pattern.observed.iter().for_each(|&j| row[j] = values[j]);
+        }
+    }
 }
 
 /// Collects the statistics of a finished pass. Under the exact E-step the variance of missing
@@ -129,7 +132,7 @@ pub(crate) fn gather(
     let frames = observations.frames();
     let (states, lag_one) = pass.second_moments();
     let mut cross = filled.t().dot(&pass.smoothed);
-    let mut squares = Array1::zeros(filled.ncols());
+    let mut squares = Array1::<f64>::zeros(filled.ncols());
     for row in filled.rows() {
         ndarray::Zip::from(&mut squares).and(row).for_each(|s, &x| *s += x * x);
     }
@@ -140,7 +143,7 @@ pub(crate) fn gather(
             let mut spread = vec![0.0; n];
             for &j in &group.dimensions {
                 let emission = dynamics.emission.row(j).to_vec();
-                kernel::apply(&sum, &emission, &mut spread);
+                kernel::apply(&sum, &emission, &mut spread, n);
                 squares[j] +=
                     kernel::dot(&emission, &spread) + group.frames.len() as f64 * dynamics.noise[j];
                 cross.row_mut(j).iter_mut().zip(&spread).for_each(|(c, s)| *c += s);

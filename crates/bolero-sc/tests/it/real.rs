@@ -1,6 +1,6 @@
 //! Reconstruction of the paper's motions.
 
-use bolero_sc::{BoleroSc, BoleroScParams, Bones};
+use bolero_sc::{BoleroSc, BoleroScParams, Bones, Untied};
 use lds_kalman::{
     EStep,
     filler::{LdsFiller, LdsFillerParams},
@@ -53,4 +53,39 @@ fn published_settings_give_the_published_errors() {
     let plain = LdsFiller::new(plain).unwrap();
     let plain_mse = error(&plain, &knee);
     assert!((3.5e-3..7e-3).contains(&plain_mse), "{plain_mse:e} m²");
+}
+
+/// All markers hidden in the given frames, counted from 1.
+fn black_out(name: &str, first: usize, frames: usize) -> Option<Holdout> {
+    let truth = motion(name)?;
+    let names: Vec<String> = truth.markers().names().iter().map(ToString::to_string).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    Some(hide(truth, &names, first, first + frames - 1))
+}
+
+#[test]
+fn a_black_out_is_filled_as_well_as_by_the_plain_system() {
+    let cases = [("132_43", 300, 25), ("141_16", 100, 10), ("132_32", 300, 60)];
+    for (name, first, frames) in cases {
+        let Some(holdout) = black_out(name, first, frames) else { return };
+        let plain = error(&LdsFiller::new(LdsFillerParams::default()).unwrap(), &holdout);
+        let soft = error(&BoleroSc::default(), &holdout);
+        // No bone has anything to hold on to, so both are exact EM from the subspace; the fill of
+        // the first iteration, interpolated here, is forgotten to a few per cent.
+        assert!(soft < 1.05 * plain, "{name}, {frames} frames: {soft:e} m², plain {plain:e} m²");
+    }
+    let Some(holdout) = black_out("132_43", 300, 25) else { return };
+    let params = BoleroScParams { untied: Untied::Observed, ..BoleroScParams::default() };
+    let held = error(&BoleroSc::new(params).unwrap(), &holdout);
+    // The authors' code has 6.4e-3 m² there: fills that count hold on to what came first.
+    assert!(held > 1e-3, "{held:e} m²");
+}
+
+#[test]
+fn five_markers_of_an_arm_come_back_to_the_published_error() {
+    let Some(truth) = motion("80_10") else { return };
+    let arm = hide(truth, &["RELB", "RFRM", "RWRA", "RWRB", "RFIN"], 100, 300);
+    let mse = error(&published(&arm, 100), &arm);
+    // The authors' code: 6.9e-3 m², and 6.7e-3 to 7.0e-3 here over four seeds.
+    assert!((6e-3..8e-3).contains(&mse), "{mse:e} m²");
 }

@@ -23,7 +23,7 @@ fn wave(frames: usize, dimensions: usize) -> Array2<f64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 60, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
 
     #[test]
     fn exact_em_never_lowers_the_likelihood(

@@ -8,7 +8,7 @@ use plotters::{
     },
 };
 
-use crate::ReportError;
+use crate::{FONT, ReportError};
 
 /// Backend units to one unit of the page: backends know whole numbers only.
 pub(super) const SUBPIXELS: u32 = 4;
@@ -32,7 +32,6 @@ impl Medium {
 
 /// Names the built-in font first and, for viewers of SVG that lack it, fonts of like widths.
 const FAMILY: &str = "DejaVu Sans, Verdana, sans-serif";
-static FONT: &[u8] = include_bytes!("../../fonts/DejaVuSans-subset.ttf");
 
 /// Colours that people with any colour vision tell apart, after Okabe and Ito.
 pub(super) mod colour {

@@ -101,8 +101,8 @@ impl FillSummary {
         let worst = self.broken_bones.iter().map(|b| b.residual_mm).reduce(f64::max);
         if let Some(worst) = worst {
             let frames = counted(self.broken_bones.len(), "frame");
-            text =
-                text + &format!("\nbones could not be kept in {frames}, by up to {worst:.2} mm\n");
+            let line = format!("\nbones could not be kept in {frames}, by up to {worst:.2} mm\n");
+            text.push_str(&line);
         }
         text
     }
