@@ -114,6 +114,12 @@ pub trait MissingUpdate {
         let _ = mask;
         None
     }
+
+    /// Whether every fill is the mean that the model expects, so that exact EM never lowers the
+    /// likelihood and a fall is a breakdown of the arithmetic.
+    fn keeps_likelihood(&self) -> bool {
+        false
+    }
 }
 
 /// Fills with what the model predicts, `G E[z]`: the plain linear dynamical system.
@@ -123,6 +129,10 @@ pub struct Prediction;
 impl MissingUpdate for Prediction {
     fn update(&mut self, context: &UpdateContext<'_>, mut filled: ArrayViewMut2<'_, f64>) {
         filled.assign(&context.prediction);
+    }
+
+    fn keeps_likelihood(&self) -> bool {
+        true
     }
 }
 
@@ -238,6 +248,9 @@ pub fn fit_em(
     })
 }
 
+/// A fall of the likelihood by less than this share of it is rounding.
+const ROUNDING: f64 = 1e-6;
+
 struct Loop<'a> {
     observations: &'a Observations,
     /// Observed entries and those fills that count as observed, where not all of them do.
@@ -274,7 +287,8 @@ impl Loop<'_> {
             if iteration == iterations {
                 return Ok(Termination::IterationLimit);
             }
-            if !self.advance() {
+            let rises = self.params.e_step == EStep::Exact && hook.keeps_likelihood();
+            if !self.advance(rises) {
                 return Ok(Termination::Stalled);
             }
         }
@@ -310,12 +324,18 @@ impl Loop<'_> {
     }
 
     /// M-step and the next E-step; on failure everything is as before and the answer is `false`.
-    fn advance(&mut self) -> bool {
+    ///
+    /// Where the likelihood has to rise and falls, the filter has lost its digits: a model that is
+    /// unstable in a direction hardly observed makes covariances grow beyond what a double holds.
+    fn advance(&mut self, rises: bool) -> bool {
+        let before = self.trace.last().copied().unwrap_or(f64::NEG_INFINITY);
+        let least =
+            if rises { before - ROUNDING * (1.0 + before.abs()) } else { f64::NEG_INFINITY };
         let evidence = self.evidence.as_ref().unwrap_or(self.observations);
         let statistics = gather(&self.pass, &self.dynamics, evidence, self.filled.view());
         let Some(next) = maximize(&statistics, &self.params.structure) else { return false };
         let previous = std::mem::replace(&mut self.dynamics, Dynamics::new(&next));
-        if let Some(log_likelihood) = self.estimate() {
+        if let Some(log_likelihood) = self.estimate().filter(|now| *now >= least) {
             self.model = next;
             self.trace.push(log_likelihood);
             return true;

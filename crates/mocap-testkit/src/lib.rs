@@ -2,7 +2,9 @@
 
 mod conformance;
 pub mod dense;
+mod recordings;
 mod takes;
 
 pub use conformance::{Claims, conformance};
+pub use recordings::{hide, motion, mse, ninety_trials, oracle_bones, recording};
 pub use takes::{articulated_take, rigid_take, with_gaps};

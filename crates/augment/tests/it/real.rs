@@ -1,17 +1,11 @@
 //! Captures with gaps of their own, below `MOCAP_DATA`; skipped without it.
 
-use std::path::PathBuf;
-
 use augment::{GapSampler, GapSamplerParams, GapStatistics};
 use mocap_core::Take;
 use mocap_io::{MarkerFile, ReadOptions};
 
 fn capture(name: &str) -> Option<Take> {
-    let Some(root) = std::env::var_os("MOCAP_DATA") else {
-        println!("skipped: MOCAP_DATA does not name a folder with recordings");
-        return None;
-    };
-    let file = PathBuf::from(root).join(name);
+    let file = mocap_testkit::recording(name)?;
     Some(MarkerFile::read(&file, &ReadOptions::default()).unwrap().take().clone())
 }
 

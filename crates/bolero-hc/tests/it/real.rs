@@ -5,8 +5,7 @@ use std::time::Instant;
 use bolero_hc::{BoleroHc, BoleroHcParams, Bones};
 use lds_kalman::filler::LdsFillerParams;
 use mocap_core::{BoneReport, GapFiller, Holdout};
-
-use crate::data::{hide, motion, mse, oracle_bones};
+use mocap_testkit::{hide, motion, mse, oracle_bones};
 
 fn knee_and_shin() -> Option<Holdout> {
     Some(hide(motion("127_07")?, &["RKNE", "RSHN"], 25, 90))

@@ -6,8 +6,7 @@ use lds_kalman::{
     filler::{LdsFiller, LdsFillerParams},
 };
 use mocap_core::{GapFiller, Holdout};
-
-use crate::data::{hide, motion, mse, oracle_bones};
+use mocap_testkit::{hide, motion, mse, oracle_bones};
 
 fn knee_and_shin() -> Option<Holdout> {
     Some(hide(motion("127_07")?, &["RKNE", "RSHN"], 25, 90))

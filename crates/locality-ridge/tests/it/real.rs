@@ -1,47 +1,16 @@
 //! Real recordings below `MOCAP_DATA`; skipped without it.
 
-use std::{collections::HashMap, path::PathBuf, time::Instant};
+use std::time::Instant;
 
 use locality_ridge::LocalRidge;
 use metrics::score;
-use mocap_core::{GapFiller, Holdout, Mask, Take};
-use mocap_io::{MarkerFile, ReadOptions};
-
-fn data(folder: &str) -> Option<PathBuf> {
-    let found = std::env::var_os("MOCAP_DATA").map(|root| PathBuf::from(root).join(folder));
-    if found.is_none() {
-        println!("skipped: MOCAP_DATA is not set");
-    }
-    found
-}
-
-/// The 90 holdouts: motion, marker name, hidden frames (one-based, end inclusive in the list).
-fn trials(folder: &std::path::Path) -> Vec<Holdout> {
-    let mut takes: HashMap<String, Take> = HashMap::new();
-    let list = std::fs::read_to_string(folder.join("trials90.csv")).unwrap();
-    let rows = list.lines().skip(1).map(|line| line.split(',').collect::<Vec<_>>());
-    rows.map(|row| {
-        let take = takes.entry(row[1].to_owned()).or_insert_with(|| {
-            let options = ReadOptions { rate_hz: Some(120.0), ..ReadOptions::default() };
-            let file = folder.join(format!("{}.csv.gz", row[1]));
-            MarkerFile::read(&file, &options).unwrap().take().clone()
-        });
-        let named = |m: &usize| take.markers().name(*m).ends_with(&format!(":{}", row[2]));
-        let marker = (0..take.marker_count()).find(named).unwrap();
-        let (start, end): (usize, usize) = (row[3].parse().unwrap(), row[4].parse().unwrap());
-        let hidden = Mask::from_fn(take.frames(), take.marker_count(), |t, m| {
-            m == marker && (start - 1..end).contains(&t)
-        });
-        Holdout::new(take.clone(), &hidden).unwrap()
-    })
-    .collect()
-}
+use mocap_core::GapFiller;
+use mocap_testkit::ninety_trials;
 
 /// The bars are those of an independent implementation in another language, rounded up.
 #[test]
 fn ninety_trials_stay_below_the_bars() {
-    let Some(folder) = data("cmu/bolero-nine") else { return };
-    let trials = trials(&folder);
+    let Some(trials) = ninety_trials() else { return };
     assert_eq!(trials.len(), 90);
     let started = Instant::now();
     let scores: Vec<_> = trials

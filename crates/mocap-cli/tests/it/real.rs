@@ -1,21 +1,11 @@
-use std::path::PathBuf;
+use mocap_testkit::recording;
 
 use crate::Bench;
-
-/// The folder of real recordings, if there is one.
-fn data() -> Option<PathBuf> {
-    let folder = std::env::var_os("MOCAP_DATA").map(PathBuf::from);
-    if folder.is_none() {
-        println!("skipped: MOCAP_DATA is not set, so there are no real recordings to fill");
-    }
-    folder
-}
 
 /// The running motion of [Li10] Fig. 2 and 3, from visible samples alone.
 #[test]
 fn bolero_sc_restores_the_knee_of_a_runner() {
-    let Some(data) = data() else { return };
-    let truth = data.join("cmu/bolero-nine/127_07.csv.gz");
+    let Some(truth) = recording("cmu/bolero-nine/127_07.csv.gz") else { return };
     let bench = Bench::new();
     let truth = truth.display();
     bench.ok(&format!(
@@ -36,8 +26,7 @@ fn bolero_sc_restores_the_knee_of_a_runner() {
 /// The same through a real C3D file.
 #[test]
 fn a_real_c3d_is_filled_in_place_of_its_gaps() {
-    let Some(data) = data() else { return };
-    let truth = data.join("cmu/paired/02_01.c3d");
+    let Some(truth) = recording("cmu/paired/02_01.c3d") else { return };
     let bench = Bench::new();
     let truth = truth.display();
     bench.ok(&format!("occlude {truth} -o gap.c3d --marker RKNE --marker RSHN --frames 100..165"));

@@ -21,13 +21,8 @@ use mocap_io::{
 
 use crate::text_support::difference;
 
-#[expect(clippy::print_stdout, reason = "a skipped test says so")]
 pub fn data(folder: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("MOCAP_DATA");
-    if root.is_none() {
-        println!("skipped: MOCAP_DATA is not set, so there are no real recordings");
-    }
-    Some(Path::new(&root?).join(folder))
+    mocap_testkit::recording(folder)
 }
 
 pub fn bytes(path: &Path) -> Vec<u8> {
@@ -165,7 +160,7 @@ fn skeleton(path: &Path) -> Asf {
 
 #[test]
 fn every_amc_reads_with_its_skeleton() {
-    let Some(folder) = data("") else { return };
+    let (Some(_), Some(folder)) = (data("hdm05/asfamc"), data("")) else { return };
     let mut count = 0;
     for path in files(&folder, ".amc").iter().filter(|p| !p.to_str().unwrap().contains("malformed"))
     {
@@ -194,7 +189,7 @@ fn every_amc_reads_with_its_skeleton() {
 
 #[test]
 fn the_cut_amc_is_refused_and_can_be_salvaged() {
-    let Some(folder) = data("") else { return };
+    let (Some(_), Some(folder)) = (data("malformed"), data("")) else { return };
     let asf = skeleton(&folder.join("cmu/asfamc/07/07.asf"));
     let cut = bytes(&folder.join("malformed/07_12_truncated_lastframe.amc"));
     let error = Amc::parse(cut.clone(), &asf, &ReadOptions::default()).unwrap_err();
