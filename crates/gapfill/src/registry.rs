@@ -1,6 +1,9 @@
 use std::sync::Arc;
 
-use baselines::{CubicSpline, Linear};
+use baselines::{
+    CubicSpline, Linear, Msvd, MsvdParams, PatternFill, Pca, PcaParams, Pchip, QuinticSpline,
+    RigidBodyFill,
+};
 use bolero_hc::{BoleroHc, BoleroHcParams};
 use bolero_sc::{BoleroSc, BoleroScParams};
 use edm_mds::Edm;
@@ -39,6 +42,42 @@ pub const METHODS: &[Method] = &[
         summary: "a smooth curve through each marker by itself; for gaps up to 0.2 s, and when all markers are gone",
         options: &["edges"],
         build: |options| Ok(Box::new(CubicSpline { edges: options.edges })),
+    },
+    Method {
+        id: "pchip",
+        summary: "a curve through each marker by itself that never overshoots; for gaps up to 0.2 s",
+        options: &["edges"],
+        build: |options| Ok(Box::new(Pchip { edges: options.edges })),
+    },
+    Method {
+        id: "vicon-spline",
+        summary: "a quintic spline from the samples right beside a gap, under the rules of Vicon Nexus; refuses short seeds",
+        options: &[],
+        build: |_| Ok(Box::new(QuinticSpline)),
+    },
+    Method {
+        id: "vicon-pattern",
+        summary: "copies the path of one donor marker, as Vicon Nexus does; refuses a donor with a gap",
+        options: &[],
+        build: |_| Ok(Box::new(PatternFill)),
+    },
+    Method {
+        id: "vicon-rigid",
+        summary: "moves with three donor markers as one rigid body, as Vicon Nexus does; refuses donors with a gap",
+        options: &[],
+        build: |_| Ok(Box::new(RigidBodyFill)),
+    },
+    Method {
+        id: "msvd",
+        summary: "a matrix of low rank completed again and again; for comparison",
+        options: &["iterations"],
+        build: low_rank,
+    },
+    Method {
+        id: "pca",
+        summary: "principal components shared with the markers nearby, of Gloersen and Federolf; strong in long gaps",
+        options: &["borders"],
+        build: components,
     },
     Method {
         id: "edm",
@@ -111,6 +150,17 @@ pub fn build(id: &str, options: &Options) -> Result<Box<dyn GapFiller>, BuildErr
     let method = METHODS.iter().find(|method| method.id == id);
     let method = method.ok_or_else(|| BuildError::Unknown { id: id.to_owned() })?;
     (method.build)(options).map_err(|source| BuildError::Options { id: method.id, source })
+}
+
+fn low_rank(options: &Options) -> Result<Box<dyn GapFiller>, FillError> {
+    let defaults = MsvdParams::default();
+    let iterations = options.iterations.unwrap_or(defaults.iterations);
+    Ok(Box::new(Msvd::new(MsvdParams { iterations, ..defaults })?))
+}
+
+fn components(options: &Options) -> Result<Box<dyn GapFiller>, FillError> {
+    let ramp = options.borders != Some(Borders::Keep);
+    Ok(Box::new(Pca::new(PcaParams { ramp, ..PcaParams::default() })?))
 }
 
 fn dynamical_system(

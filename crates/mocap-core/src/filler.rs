@@ -111,6 +111,20 @@ pub enum Refusal {
     /// No other marker is seen that the method could go by.
     #[error("no other marker is seen to fill it from")]
     NoNeighbour,
+    /// Too few samples in a row beside the gap.
+    #[error("only {found} samples in a row stand beside the gap, {needed} are needed")]
+    ShortSeed {
+        /// Samples in a row on the side that has fewer.
+        found: usize,
+        /// Samples in a row that the method needs on each side.
+        needed: usize,
+    },
+    /// A marker that the method goes by is missing itself.
+    #[error("its donor marker is missing within or right beside the gap")]
+    DonorMissing {
+        /// Index of the donor.
+        donor: usize,
+    },
     /// The method's answer was not finite.
     #[error("the method gave no finite position")]
     NotFinite,
