@@ -38,6 +38,48 @@ pub enum MetricError {
     /// There is nothing to score.
     #[error("no cell with a known truth is hidden; hide at least one observed sample")]
     NoHiddenCell,
+    /// Edges of length classes that make no classes.
+    #[error("the edges of length classes must be finite seconds that increase from above 0")]
+    Edges,
+    /// Calibrations that do not add up.
+    #[error(
+        "calibrations counted for different multiples of sigma do not add up; count both for the same"
+    )]
+    Multiples,
+    /// Arrays of joints of different size.
+    #[error("{what} must be {expected:?} long, but is {found:?}")]
+    JointShape {
+        /// What does not fit.
+        what: &'static str,
+        /// The size that fits.
+        expected: Vec<usize>,
+        /// The size that came.
+        found: Vec<usize>,
+    },
+    /// A matrix that is no rotation.
+    #[error(
+        "joint {joint} has no rotation in frame {frame}: its matrix is off by {deviation:.1e}; rotations \
+         are orthonormal and not mirrored"
+    )]
+    Rotation {
+        /// The frame.
+        frame: usize,
+        /// The joint.
+        joint: usize,
+        /// Largest entry of the transposed times itself less the identity; infinite for a mirror.
+        deviation: f64,
+    },
+    /// A joint that is not there.
+    #[error("there is no joint {joint}: the motion has {joints}, counted from 0")]
+    Joint {
+        /// The joint as given.
+        joint: usize,
+        /// Joints of the motion.
+        joints: usize,
+    },
+    /// A choice of no joints.
+    #[error("no joint is chosen; name at least one")]
+    NoJoint,
     /// A value that the core types refuse.
     #[error(transparent)]
     Core(#[from] CoreError),

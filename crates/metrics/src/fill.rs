@@ -100,7 +100,11 @@ pub fn per_gap(truth: &Take, filled: &Take, hidden: &Mask) -> Result<Vec<GapScor
     Ok(runs(hidden).into_iter().map(scored).collect())
 }
 
-fn score_cells(truth: &Take, filled: &Take, cells: impl Iterator<Item = (usize, usize)>) -> Score {
+pub(crate) fn score_cells(
+    truth: &Take,
+    filled: &Take,
+    cells: impl Iterator<Item = (usize, usize)>,
+) -> Score {
     let (mut hidden_cells, mut truthless_cells) = (0, 0);
     let mut errors_m = Vec::new();
     for (t, m) in cells {
@@ -128,7 +132,7 @@ fn score_cells(truth: &Take, filled: &Take, cells: impl Iterator<Item = (usize, 
 }
 
 /// The maximal runs of cells in the set, marker by marker and in time order.
-fn runs(cells: &Mask) -> Vec<Gap> {
+pub(crate) fn runs(cells: &Mask) -> Vec<Gap> {
     let mut runs: Vec<Gap> = Vec::new();
     for marker in 0..cells.markers() {
         for t in (0..cells.frames()).filter(|&t| cells.contains(t, marker)) {

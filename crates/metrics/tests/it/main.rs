@@ -3,8 +3,12 @@
 
 mod bones;
 mod border;
+mod calibration;
 mod fill;
+mod joints;
+mod length;
 mod properties;
+mod smoothness;
 
 use mocap_core::{MarkerSet, Take};
 use ndarray::Array3;
