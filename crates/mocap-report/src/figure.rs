@@ -1,22 +1,18 @@
 use std::path::Path;
 
 use mocap_core::{BoneSet, Filled, Mask, Take};
-use plotters::{
-    backend::{BitMapBackend, SVGBackend},
-    prelude::DrawingBackend,
+
+use crate::{
+    ReportError,
+    draw::{to_png, to_svg},
 };
 
-use crate::ReportError;
-
 mod axes;
-mod canvas;
 mod cell;
 mod curve;
 mod page;
 mod timeline;
 
-pub(crate) use canvas::printable;
-use canvas::{Canvas, Medium, SUBPIXELS};
 use page::Page;
 
 /// Markers whose trajectories one figure can hold.
@@ -137,18 +133,7 @@ pub fn plot_take(input: &PlotInput<'_>, path: &Path) -> Result<Vec<u8>, ReportEr
 /// not belong to one take.
 pub fn render_svg(input: &PlotInput<'_>) -> Result<Vec<u8>, ReportError> {
     input.check()?;
-    canvas::register_font()?;
-    let page = Page::plan(input);
-    let (width, height) = page.size();
-    let mut svg = String::new();
-    {
-        let backend = SVGBackend::with_string(&mut svg, (width * SUBPIXELS, height * SUBPIXELS));
-        draw(&page, backend, Medium::Svg)?;
-    }
-    // The backend knows whole units only, so it is given small ones; the first tag scales them back.
-    let units = format!("width=\"{}\" height=\"{}\"", width * SUBPIXELS, height * SUBPIXELS);
-    let pixels = format!("width=\"{width}\" height=\"{height}\" stroke-linejoin=\"round\"");
-    Ok(svg.replacen(&units, &pixels, 1).into_bytes())
+    to_svg(&Page::plan(input))
 }
 
 /// Draws a figure as PNG, two pixels to each unit of the SVG.
@@ -157,56 +142,5 @@ pub fn render_svg(input: &PlotInput<'_>) -> Result<Vec<u8>, ReportError> {
 /// As [`render_svg`], and [`ReportError::Png`].
 pub fn render_png(input: &PlotInput<'_>) -> Result<Vec<u8>, ReportError> {
     input.check()?;
-    canvas::register_font()?;
-    let page = Page::plan(input);
-    let (width, height) = page.size();
-    let (fine_width, fine_height) = (width * SUBPIXELS, height * SUBPIXELS);
-    let mut fine = vec![255_u8; 3 * fine_width as usize * fine_height as usize];
-    let backend = BitMapBackend::with_buffer(&mut fine, (fine_width, fine_height));
-    draw(&page, backend, Medium::Bitmap)?;
-    let shrink = SUBPIXELS / PNG_SCALE;
-    let pixels = shrink_image(&fine, fine_width as usize, shrink as usize);
-    encode_png(&pixels, width * PNG_SCALE, height * PNG_SCALE)
-}
-
-/// Pixels of a PNG to each unit of the page.
-const PNG_SCALE: u32 = 2;
-
-fn draw<DB: DrawingBackend<ErrorType: 'static>>(
-    page: &Page<'_>,
-    mut backend: DB,
-    medium: Medium,
-) -> Result<(), ReportError> {
-    let mut canvas = Canvas::new(&mut backend, medium);
-    page.draw(&mut canvas)?;
-    canvas.finish()
-}
-
-/// Averages squares of `by` × `by` RGB pixels.
-fn shrink_image(fine: &[u8], fine_width: usize, by: usize) -> Vec<u8> {
-    let (row, area) = (3 * fine_width, by * by);
-    let mut pixels = Vec::with_capacity(fine.len() / area);
-    for rows in fine.chunks_exact(by * row) {
-        for x in 0..fine_width / by {
-            for channel in 0..3 {
-                let square = (0..area)
-                    .map(|i| usize::from(rows[i / by * row + 3 * (x * by + i % by) + channel]));
-                let mean = (square.sum::<usize>() + area / 2) / area;
-                pixels.push(u8::try_from(mean).unwrap_or(u8::MAX));
-            }
-        }
-    }
-    pixels
-}
-
-fn encode_png(pixels: &[u8], width: u32, height: u32) -> Result<Vec<u8>, ReportError> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, width, height);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_adaptive_filter(png::AdaptiveFilterType::Adaptive);
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(pixels)?;
-    writer.finish()?;
-    Ok(bytes)
+    to_png(&Page::plan(input))
 }

@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+pub mod draw;
 mod error;
 mod figure;
 mod html;
@@ -8,10 +9,10 @@ mod table;
 
 pub use error::ReportError;
 
-/// The font of the figures, for programs that draw their own beside them: a subset of `DejaVu` Sans with
-/// Latin, Greek and Cyrillic letters.
-pub static FONT: &[u8] = include_bytes!("../fonts/DejaVuSans-subset.ttf");
+/// The font of the figures: a subset of `DejaVu` Sans with Latin, Greek and Cyrillic letters.
+static FONT: &[u8] = include_bytes!("../fonts/DejaVuSans-subset.ttf");
 
 pub use figure::{FigureFormat, MAX_FIGURE_MARKERS, PlotInput, plot_take, render_png, render_svg};
-pub use html::html_page;
+pub use html::{html_page, web_page};
 pub use summary::{BrokenBones, FillSummary, GapFill, GapSummary, MarkerSummary, TakeSummary};
+pub use table::{Entry, Table, escape};

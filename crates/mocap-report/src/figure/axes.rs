@@ -1,7 +1,7 @@
-use plotters::prelude::DrawingBackend;
-
-use super::canvas::{Align, Canvas, Pen, Point, colour};
-use crate::ReportError;
+use crate::{
+    ReportError,
+    draw::{Align, Backend, Canvas, Pen, Point, colour},
+};
 
 /// A closed interval of values.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -101,7 +101,7 @@ impl Axes {
     }
 
     /// Vertical grid lines with their labels below the chart.
-    pub(super) fn draw_x<DB: DrawingBackend<ErrorType: 'static>>(
+    pub(super) fn draw_x<DB: Backend>(
         &self,
         canvas: &mut Canvas<'_, DB>,
         wanted: usize,
@@ -117,7 +117,7 @@ impl Axes {
     }
 
     /// Horizontal grid lines with their labels left of the chart.
-    pub(super) fn draw_y<DB: DrawingBackend<ErrorType: 'static>>(
+    pub(super) fn draw_y<DB: Backend>(
         &self,
         canvas: &mut Canvas<'_, DB>,
         wanted: usize,
@@ -133,7 +133,7 @@ impl Axes {
     }
 
     /// The two axis lines.
-    pub(super) fn draw_frame<DB: DrawingBackend<ErrorType: 'static>>(
+    pub(super) fn draw_frame<DB: Backend>(
         &self,
         canvas: &mut Canvas<'_, DB>,
     ) -> Result<(), ReportError> {

@@ -1,13 +1,15 @@
 use std::ops::Range;
 
-use plotters::prelude::{DrawingBackend, RGBColor};
+use plotters::style::RGBColor;
 
 use super::{
     axes::{Axes, Interval},
-    canvas::{Align, Canvas, Pen, Point, colour},
     curve::{Curve, thin},
 };
-use crate::ReportError;
+use crate::{
+    ReportError,
+    draw::{Align, Backend, Canvas, Pen, Point, colour},
+};
 
 pub(super) const MEASURED_PEN: Pen = Pen::solid(colour::MEASURED, 1.25);
 pub(super) const FILLED_PEN: Pen = Pen::solid(colour::FILLED, 2.5);
@@ -43,10 +45,7 @@ impl<'a> Cell<'a> {
         Self { curve, axes, rate_hz }
     }
 
-    pub(super) fn draw<DB: DrawingBackend<ErrorType: 'static>>(
-        &self,
-        canvas: &mut Canvas<'_, DB>,
-    ) -> Result<(), ReportError> {
+    pub(super) fn draw<DB: Backend>(&self, canvas: &mut Canvas<'_, DB>) -> Result<(), ReportError> {
         let (axes, curve) = (&self.axes, self.curve);
         let at = (axes.left, axes.top - 8.0);
         canvas.text(&curve.heading, at, 12.5, Align::Left, colour::INK)?;
@@ -76,7 +75,7 @@ impl<'a> Cell<'a> {
         axes.draw_frame(canvas)
     }
 
-    fn shade<DB: DrawingBackend<ErrorType: 'static>>(
+    fn shade<DB: Backend>(
         &self,
         canvas: &mut Canvas<'_, DB>,
         runs: &[Range<usize>],
@@ -88,7 +87,7 @@ impl<'a> Cell<'a> {
         })
     }
 
-    fn line<DB: DrawingBackend<ErrorType: 'static>>(
+    fn line<DB: Backend>(
         &self,
         canvas: &mut Canvas<'_, DB>,
         values: &[Option<f64>],
@@ -98,7 +97,7 @@ impl<'a> Cell<'a> {
         let point = |t: usize| Some(self.axes.at(t as f64 / self.rate_hz, values[t]?));
         let points: Vec<Point> = run.filter_map(point).collect();
         match points.as_slice() {
-            [single] => canvas.dot(*single, pen.width.max(MIN_DOT), pen),
+            [single] => canvas.dot(*single, pen.width.max(MIN_DOT), pen.colour),
             many => canvas.polyline(&thin(many), pen),
         }
     }

@@ -2,7 +2,8 @@ use std::ops::Range;
 
 use mocap_core::{Bone, Take};
 
-use super::{PlotInput, canvas::Point, cell::shorten};
+use super::{PlotInput, cell::shorten};
+use crate::draw::Point;
 
 /// Millimetres in a metre.
 const MM_PER_M: f64 = 1000.0;

@@ -1,14 +1,16 @@
 use mocap_core::Bone;
-use plotters::prelude::DrawingBackend;
 
 use super::{
     PlotInput,
-    canvas::{Align, Canvas, Pen, colour},
     cell::{Cell, FILLED_PEN, Frame, MEASURED_PEN, NOMINAL_PEN, TRUTH_PEN},
     curve::Curve,
     timeline::Timeline,
 };
-use crate::{ReportError, summary::counted};
+use crate::{
+    ReportError,
+    draw::{Align, Backend, Canvas, Drawing, Pen, colour},
+    summary::counted,
+};
 
 const WIDTH: f64 = 1200.0;
 const MARGIN: f64 = 28.0;
@@ -59,40 +61,7 @@ impl<'a> Page<'a> {
         Self { input, timeline, trajectories, bones: bone_grid(input, &markers) }
     }
 
-    /// Width and height in page units.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a few thousand
-    pub(super) fn size(&self) -> (u32, u32) {
-        let sections = [self.timeline.height(), self.trajectories.height(), self.bones.height()];
-        let headings = HEADING_HEIGHT * sections.len() as f64;
-        let height = HEADER_HEIGHT + headings + sections.iter().sum::<f64>() + MARGIN;
-        (WIDTH as u32, height.ceil() as u32)
-    }
-
-    pub(super) fn draw<DB: DrawingBackend<ErrorType: 'static>>(
-        &self,
-        canvas: &mut Canvas<'_, DB>,
-    ) -> Result<(), ReportError> {
-        let (width, height) = self.size();
-        canvas.bar((0.0, 0.0), (f64::from(width), f64::from(height)), plotters::style::WHITE)?;
-        self.draw_header(canvas)?;
-        let mut top = HEADER_HEIGHT;
-        heading(canvas, "A", &self.timeline.heading(), top)?;
-        top += HEADING_HEIGHT;
-        self.timeline.draw(canvas, MARGIN, WIDTH - MARGIN, top)?;
-        top += self.timeline.height();
-        for (letter, grid) in [("B", &self.trajectories), ("C", &self.bones)] {
-            heading(canvas, letter, &grid.heading, top)?;
-            top += HEADING_HEIGHT;
-            draw_grid(canvas, grid, top, self.input.take.rate_hz())?;
-            top += grid.height();
-        }
-        Ok(())
-    }
-
-    fn draw_header<DB: DrawingBackend<ErrorType: 'static>>(
-        &self,
-        canvas: &mut Canvas<'_, DB>,
-    ) -> Result<(), ReportError> {
+    fn draw_header<DB: Backend>(&self, canvas: &mut Canvas<'_, DB>) -> Result<(), ReportError> {
         let title = super::cell::shorten(self.input.title, 96);
         canvas.text(&title, (MARGIN, 38.0), 21.0, Align::Left, colour::INK)?;
         canvas.text(&self.subtitle(), (MARGIN, 60.0), 13.0, Align::Left, colour::FAINT)?;
@@ -144,6 +113,32 @@ impl<'a> Page<'a> {
     }
 }
 
+impl Drawing for Page<'_> {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a few thousand
+    fn size(&self) -> (u32, u32) {
+        let sections = [self.timeline.height(), self.trajectories.height(), self.bones.height()];
+        let headings = HEADING_HEIGHT * sections.len() as f64;
+        let height = HEADER_HEIGHT + headings + sections.iter().sum::<f64>() + MARGIN;
+        (WIDTH as u32, height.ceil() as u32)
+    }
+
+    fn draw<DB: Backend>(&self, canvas: &mut Canvas<'_, DB>) -> Result<(), ReportError> {
+        self.draw_header(canvas)?;
+        let mut top = HEADER_HEIGHT;
+        heading(canvas, "A", &self.timeline.heading(), top)?;
+        top += HEADING_HEIGHT;
+        self.timeline.draw(canvas, MARGIN, WIDTH - MARGIN, top)?;
+        top += self.timeline.height();
+        for (letter, grid) in [("B", &self.trajectories), ("C", &self.bones)] {
+            heading(canvas, letter, &grid.heading, top)?;
+            top += HEADING_HEIGHT;
+            draw_grid(canvas, grid, top, self.input.take.rate_hz())?;
+            top += grid.height();
+        }
+        Ok(())
+    }
+}
+
 #[derive(Debug, Clone, Copy)]
 enum Key {
     Measured,
@@ -165,7 +160,7 @@ impl Key {
     }
 }
 
-fn heading<DB: DrawingBackend<ErrorType: 'static>>(
+fn heading<DB: Backend>(
     canvas: &mut Canvas<'_, DB>,
     letter: &str,
     text: &str,
@@ -175,7 +170,7 @@ fn heading<DB: DrawingBackend<ErrorType: 'static>>(
     canvas.text(text, (MARGIN + 22.0, top + 20.0), 14.0, Align::Left, colour::INK)
 }
 
-fn draw_grid<DB: DrawingBackend<ErrorType: 'static>>(
+fn draw_grid<DB: Backend>(
     canvas: &mut Canvas<'_, DB>,
     grid: &Grid,
     top: f64,

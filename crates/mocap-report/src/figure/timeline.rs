@@ -1,15 +1,16 @@
 use std::ops::Range;
 
-use plotters::prelude::DrawingBackend;
-
 use super::{
     PlotInput,
     axes::{Axes, Interval},
-    canvas::{Align, Canvas, colour},
     cell::{shorten, span, time_axis},
     curve::runs,
 };
-use crate::{ReportError, summary::counted};
+use crate::{
+    ReportError,
+    draw::{Align, Backend, Canvas, colour},
+    summary::counted,
+};
 
 /// One row a marker: where it was measured, filled and left open.
 #[derive(Debug, Clone)]
@@ -80,7 +81,7 @@ impl Timeline {
         if self.rows.is_empty() { 0.0 } else { self.rows.len() as f64 * ROW_HEIGHT + AXIS_HEIGHT }
     }
 
-    pub(super) fn draw<DB: DrawingBackend<ErrorType: 'static>>(
+    pub(super) fn draw<DB: Backend>(
         &self,
         canvas: &mut Canvas<'_, DB>,
         left: f64,
@@ -107,7 +108,7 @@ impl Timeline {
         canvas.text("time (s)", below, 11.5, Align::Centre, colour::INK)
     }
 
-    fn draw_row<DB: DrawingBackend<ErrorType: 'static>>(
+    fn draw_row<DB: Backend>(
         &self,
         canvas: &mut Canvas<'_, DB>,
         row: &Row,

@@ -125,9 +125,9 @@ impl FillSummary {
         }
     }
 
-    pub(crate) fn gap_table(&self) -> Table<7> {
+    pub(crate) fn gap_table(&self) -> Table {
         let row = |gap: &GapFill| {
-            [
+            vec![
                 Entry::Text(gap.marker.clone()),
                 Entry::Integer(gap.first_frame),
                 Entry::Integer(gap.last_frame),
@@ -137,18 +137,16 @@ impl FillSummary {
                 gap.refused.clone().map_or(Entry::Empty, Entry::Text),
             ]
         };
-        Table {
-            columns: [
-                "marker",
-                "first frame",
-                "last frame",
-                "method",
-                "sigma mm",
-                "border step mm",
-                "refused",
-            ],
-            rows: self.gaps.iter().map(row).collect(),
-        }
+        Table::new([
+            "marker",
+            "first frame",
+            "last frame",
+            "method",
+            "sigma mm",
+            "border step mm",
+            "refused",
+        ])
+        .with_rows(self.gaps.iter().map(row))
     }
 }
 

@@ -98,11 +98,11 @@ impl TakeSummary {
     pub fn to_text(&self) -> String {
         let mut text = self.headline() + "\n";
         let table = self.marker_table(|m| m.gaps > 0);
-        if !table.rows.is_empty() {
+        if !table.is_empty() {
             text = text + "\n" + &table.to_text();
         }
         if !self.unused_markers.is_empty() {
-            let names = crate::figure::printable(&self.unused_markers.join(", "));
+            let names = crate::draw::printable(&self.unused_markers.join(", "));
             text = text + "\nunused markers: " + &names + "\n";
         }
         text
@@ -112,9 +112,9 @@ impl TakeSummary {
     #[must_use]
     pub fn gaps_text(&self, limit: usize) -> String {
         let mut table = self.gap_table();
-        let more = table.rows.len().saturating_sub(limit);
-        table.rows.truncate(limit);
-        match (table.rows.is_empty(), more) {
+        let more = table.rows().len().saturating_sub(limit);
+        table.truncate(limit);
+        match (table.is_empty(), more) {
             (true, _) => String::new(),
             (false, 0) => table.to_text(),
             (false, more) => format!("{}… and {}\n", table.to_text(), counted(more, "more gap")),
@@ -142,9 +142,9 @@ impl TakeSummary {
         self.gap_table().to_csv()
     }
 
-    pub(crate) fn marker_table(&self, keep: impl Fn(&MarkerSummary) -> bool) -> Table<7> {
+    pub(crate) fn marker_table(&self, keep: impl Fn(&MarkerSummary) -> bool) -> Table {
         let row = |m: &MarkerSummary| {
-            [
+            vec![
                 Entry::Text(m.marker.clone()),
                 Entry::Number(m.missing_percent, 2),
                 Entry::count(m.gaps),
@@ -154,23 +154,21 @@ impl TakeSummary {
                 Entry::integer(m.last_frame),
             ]
         };
-        Table {
-            columns: [
-                "marker",
-                "missing %",
-                "gaps",
-                "longest frames",
-                "longest s",
-                "first seen",
-                "last seen",
-            ],
-            rows: self.per_marker.iter().filter(|m| keep(m)).map(row).collect(),
-        }
+        Table::new([
+            "marker",
+            "missing %",
+            "gaps",
+            "longest frames",
+            "longest s",
+            "first seen",
+            "last seen",
+        ])
+        .with_rows(self.per_marker.iter().filter(|m| keep(m)).map(row))
     }
 
-    pub(crate) fn gap_table(&self) -> Table<5> {
+    pub(crate) fn gap_table(&self) -> Table {
         let row = |gap: &GapSummary| {
-            [
+            vec![
                 Entry::Text(gap.marker.clone()),
                 Entry::Integer(gap.first_frame),
                 Entry::Integer(gap.last_frame),
@@ -178,10 +176,8 @@ impl TakeSummary {
                 Entry::Number(gap.seconds, 3),
             ]
         };
-        Table {
-            columns: ["marker", "first frame", "last frame", "frames", "seconds"],
-            rows: self.gaps.iter().map(row).collect(),
-        }
+        Table::new(["marker", "first frame", "last frame", "frames", "seconds"])
+            .with_rows(self.gaps.iter().map(row))
     }
 }
 

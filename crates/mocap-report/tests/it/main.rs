@@ -5,6 +5,7 @@ mod figure;
 mod html;
 mod properties;
 mod summary;
+mod table;
 mod xml;
 
 use mocap_core::{

@@ -1,21 +1,22 @@
 use std::sync::OnceLock;
 
 use plotters::{
-    prelude::{DrawingBackend, FontStyle, RGBColor},
+    prelude::{FontStyle, RGBColor},
     style::{
         FontDesc, FontFamily, ShapeStyle, TextStyle, register_font as register,
         text_anchor::{HPos, Pos, VPos},
     },
 };
 
+use super::Backend;
 use crate::{FONT, ReportError};
 
 /// Backend units to one unit of the page: backends know whole numbers only.
-pub(super) const SUBPIXELS: u32 = 4;
+pub(crate) const SUBPIXELS: u32 = 4;
 
 /// What the backends do differently.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Medium {
+pub(crate) enum Medium {
     Svg,
     Bitmap,
 }
@@ -34,64 +35,84 @@ impl Medium {
 const FAMILY: &str = "DejaVu Sans, Verdana, sans-serif";
 
 /// Colours that people with any colour vision tell apart, after Okabe and Ito.
-pub(super) mod colour {
-    use super::RGBColor;
+pub mod colour {
+    pub use plotters::style::RGBColor;
 
-    pub(crate) const INK: RGBColor = RGBColor(34, 34, 34);
-    pub(crate) const FAINT: RGBColor = RGBColor(110, 110, 110);
-    pub(crate) const GRID: RGBColor = RGBColor(226, 226, 226);
-    pub(crate) const SHADE: RGBColor = RGBColor(238, 242, 247);
-    pub(crate) const OPEN_SHADE: RGBColor = RGBColor(252, 236, 224);
-    pub(crate) const MEASURED: RGBColor = RGBColor(120, 120, 120);
-    pub(crate) const FILLED: RGBColor = RGBColor(0, 114, 178);
-    pub(crate) const MISSING: RGBColor = RGBColor(213, 94, 0);
-    pub(crate) const TRUTH: RGBColor = RGBColor(0, 0, 0);
-    pub(crate) const NOMINAL: RGBColor = RGBColor(0, 158, 115);
+    /// Letters, and whatever frames something.
+    pub const INK: RGBColor = RGBColor(34, 34, 34);
+    /// Letters of lesser weight.
+    pub const FAINT: RGBColor = RGBColor(110, 110, 110);
+    /// Grid lines.
+    pub const GRID: RGBColor = RGBColor(226, 226, 226);
+    /// Ground of a gap.
+    pub const SHADE: RGBColor = RGBColor(238, 242, 247);
+    /// Ground of a gap that is still open.
+    pub const OPEN_SHADE: RGBColor = RGBColor(252, 236, 224);
+    /// Measured samples.
+    pub const MEASURED: RGBColor = RGBColor(120, 120, 120);
+    /// Filled samples.
+    pub const FILLED: RGBColor = RGBColor(0, 114, 178);
+    /// Missing samples.
+    pub const MISSING: RGBColor = RGBColor(213, 94, 0);
+    /// The true motion.
+    pub const TRUTH: RGBColor = RGBColor(0, 0, 0);
+    /// What a length ought to be.
+    pub const NOMINAL: RGBColor = RGBColor(0, 158, 115);
 }
 
 /// Makes the built-in font known to the drawing library, once in the life of the process.
-pub(super) fn register_font() -> Result<(), ReportError> {
+pub(crate) fn register_font() -> Result<(), ReportError> {
     static DONE: OnceLock<bool> = OnceLock::new();
     let done = DONE.get_or_init(|| register(FAMILY, FontStyle::Normal, FONT).is_ok());
     if *done { Ok(()) } else { Err(ReportError::Font) }
 }
 
 /// A point of the page, in page units from its top left corner.
-pub(super) type Point = (f64, f64);
+pub type Point = (f64, f64);
 
 /// Colour and width of a line.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Pen {
+pub struct Pen {
+    /// Its colour.
     pub colour: RGBColor,
+    /// Its width in page units.
     pub width: f64,
+    /// Whether it leaves gaps.
     pub dashed: bool,
 }
 
 impl Pen {
-    pub(super) const fn solid(colour: RGBColor, width: f64) -> Self {
+    /// An unbroken line.
+    #[must_use]
+    pub const fn solid(colour: RGBColor, width: f64) -> Self {
         Self { colour, width, dashed: false }
     }
 
-    pub(super) const fn dashed(colour: RGBColor, width: f64) -> Self {
+    /// A broken line.
+    #[must_use]
+    pub const fn dashed(colour: RGBColor, width: f64) -> Self {
         Self { colour, width, dashed: true }
     }
 }
 
 /// Where a text lies relative to its point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Align {
+pub enum Align {
+    /// To its right.
     Left,
+    /// Centred on it.
     Centre,
+    /// To its left.
     Right,
 }
 
 /// Draws in page units on either backend.
-pub(super) struct Canvas<'a, DB> {
+pub struct Canvas<'a, DB> {
     backend: &'a mut DB,
     medium: Medium,
 }
 
-impl<'a, DB: DrawingBackend<ErrorType: 'static>> Canvas<'a, DB> {
+impl<'a, DB: Backend> Canvas<'a, DB> {
     pub(super) fn new(backend: &'a mut DB, medium: Medium) -> Self {
         Self { backend, medium }
     }
@@ -101,23 +122,39 @@ impl<'a, DB: DrawingBackend<ErrorType: 'static>> Canvas<'a, DB> {
     }
 
     /// A filled rectangle.
-    pub(super) fn bar(
-        &mut self,
-        from: Point,
-        to: Point,
-        colour: RGBColor,
-    ) -> Result<(), ReportError> {
+    ///
+    /// # Errors
+    /// [`ReportError::Draw`].
+    pub fn bar(&mut self, from: Point, to: Point, colour: RGBColor) -> Result<(), ReportError> {
         let style = ShapeStyle::from(colour).filled();
         self.backend.draw_rect(units(from), units(to), &style, true).map_err(draw_error)
     }
 
-    pub(super) fn dot(&mut self, at: Point, radius: f64, pen: Pen) -> Result<(), ReportError> {
-        let style = ShapeStyle::from(pen.colour).filled();
+    /// A filled circle.
+    ///
+    /// # Errors
+    /// [`ReportError::Draw`].
+    pub fn dot(&mut self, at: Point, radius: f64, colour: RGBColor) -> Result<(), ReportError> {
+        let style = ShapeStyle::from(colour).filled();
         let radius = unit(radius).unsigned_abs();
         self.backend.draw_circle(units(at), radius, &style, true).map_err(draw_error)
     }
 
-    pub(super) fn polyline(&mut self, points: &[Point], pen: Pen) -> Result<(), ReportError> {
+    /// A filled convex polygon.
+    ///
+    /// # Errors
+    /// [`ReportError::Draw`].
+    pub fn polygon(&mut self, corners: &[Point], colour: RGBColor) -> Result<(), ReportError> {
+        let corners: Vec<(i32, i32)> = corners.iter().copied().map(units).collect();
+        let style = ShapeStyle::from(colour).filled();
+        self.backend.fill_polygon(corners, &style).map_err(draw_error)
+    }
+
+    /// A line through points, as broken as its pen says.
+    ///
+    /// # Errors
+    /// [`ReportError::Draw`].
+    pub fn polyline(&mut self, points: &[Point], pen: Pen) -> Result<(), ReportError> {
         if pen.dashed {
             return dashes(points).iter().try_for_each(|dash| self.stroke(dash, pen));
         }
@@ -151,8 +188,11 @@ impl<'a, DB: DrawingBackend<ErrorType: 'static>> Canvas<'a, DB> {
         })
     }
 
-    /// One line of text with its baseline at `at`.
-    pub(super) fn text(
+    /// One line of text with its baseline at `at`, and its size in page units.
+    ///
+    /// # Errors
+    /// [`ReportError::Draw`].
+    pub fn text(
         &mut self,
         text: &str,
         at: Point,
