@@ -34,6 +34,10 @@ enum Which {
 /// Goes on where it was if it is stopped and started again.
 #[derive(Args)]
 pub struct Board {
+    /// Rules by which gaps are cut: bolero-90, multi, limb, blackout, realistic; or pseudo-gaps, on which
+    /// parameters may be chosen [default: all but the last]
+    #[arg(long, value_delimiter = ',', value_name = "A,B,…")]
+    protocol: Vec<String>,
     #[command(flatten)]
     options: Options,
 }
@@ -49,10 +53,13 @@ struct Options {
     /// Folder for the results [default: out/bolero or out/leaderboard]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Methods [default: all of the registry]; `bolero-sc+lambda=100` sets an option
+    #[arg(long, value_delimiter = ',', value_name = "A,B,…")]
+    methods: Vec<String>,
     /// Install what is missing without asking
     #[arg(short, long)]
     yes: bool,
-    /// More options for `mocap-repro`, such as `--threads 2 --methods lds,bolero-sc`
+    /// More options for `mocap-repro`, such as `--threads 2 --coordinates world`
     #[arg(last = true)]
     more: Vec<String>,
 }
@@ -63,8 +70,8 @@ const NOT_YET: u8 = 2;
 /// Runs the evaluation of a paper.
 pub fn paper(root: &Path, paper: &Paper) -> Result<ExitCode> {
     match paper.which {
-        Which::Bolero => run(root, "bolero", &paper.options),
-        Which::Leaderboard => run(root, "leaderboard", &paper.options),
+        Which::Bolero => run(root, "bolero", &paper.options, &[]),
+        Which::Leaderboard => run(root, "leaderboard", &paper.options, &[]),
         Which::Localmocap => {
             eprintln!(
                 "reproduce-paper localmocap: not yet: its networks are not in this workspace. \
@@ -77,14 +84,17 @@ pub fn paper(root: &Path, paper: &Paper) -> Result<ExitCode> {
 
 /// Runs the leader board.
 pub fn leaderboard(root: &Path, board: &Board) -> Result<ExitCode> {
-    run(root, "leaderboard", &board.options)
+    run(root, "leaderboard", &board.options, &board.protocol)
 }
 
-fn run(root: &Path, task: &str, options: &Options) -> Result<ExitCode> {
+fn run(root: &Path, task: &str, options: &Options, protocols: &[String]) -> Result<ExitCode> {
     setup::ensure(options.yes)?;
     let mut command = process::cargo(root);
     command.args(["run", "--release", "--package", "mocap-repro", "--", task]);
     command.args(arguments(root, task, options)?);
+    if !protocols.is_empty() {
+        command.args(["--protocol", &protocols.join(",")]);
+    }
     process::run(&mut command)?;
     Ok(ExitCode::SUCCESS)
 }
@@ -102,6 +112,9 @@ fn arguments(root: &Path, task: &str, options: &Options) -> Result<Vec<std::ffi:
     if let Some(data) = &options.data {
         arguments.extend(["--data".into(), std::path::absolute(data)?.into()]);
     }
+    if !options.methods.is_empty() {
+        arguments.extend(["--methods".into(), options.methods.join(",").into()]);
+    }
     arguments.extend(options.more.iter().map(Into::into));
     Ok(arguments)
 }
@@ -111,7 +124,14 @@ mod tests {
     use super::*;
 
     fn options() -> Options {
-        Options { quick: false, data: None, out: None, yes: false, more: Vec::new() }
+        Options {
+            quick: false,
+            data: None,
+            out: None,
+            methods: Vec::new(),
+            yes: false,
+            more: Vec::new(),
+        }
     }
 
     #[test]
@@ -127,12 +147,13 @@ mod tests {
             quick: true,
             data: Some("data".into()),
             out: Some("results".into()),
+            methods: vec!["lds".into(), "ridge".into()],
             more: vec!["--threads".into(), "2".into()],
             ..options()
         };
         let arguments = arguments(Path::new("root"), "bolero", &options).expect("paths are short");
         assert!(Path::new(&arguments[1]).is_absolute() && Path::new(&arguments[4]).is_absolute());
         assert_eq!(arguments[2], "--quick");
-        assert_eq!(arguments[5..], ["--threads", "2"]);
+        assert_eq!(arguments[5..], ["--methods", "lds,ridge", "--threads", "2"]);
     }
 }

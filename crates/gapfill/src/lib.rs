@@ -6,5 +6,6 @@ mod registry;
 
 pub use baselines::Edges;
 pub use joined::{Borders, Joined};
+pub use lds_kalman::Start;
 pub use options::{Bones, Coordinates, Options};
 pub use registry::{BuildError, DEFAULT, METHODS, Method, build};

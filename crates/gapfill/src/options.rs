@@ -1,6 +1,6 @@
 use mocap_core::{BoneRule, BoneSet, CoreError, MarkerKnowledge, Take};
 
-use crate::{Borders, Edges};
+use crate::{Borders, Edges, Start};
 
 /// What a user may say about any method; a method reads what concerns it.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,6 +17,8 @@ pub struct Options {
     pub lambda: Option<f64>,
     /// Iterations at most, at least 1; `None`: the method's own number.
     pub iterations: Option<usize>,
+    /// Where a dynamical system starts to learn; `None`: the method's own choice.
+    pub start: Option<Start>,
     /// Seed of a random start.
     pub seed: u64,
     /// What becomes of gaps at the start or end of the take, for methods that interpolate.
@@ -37,6 +39,7 @@ impl Default for Options {
             hidden: None,
             lambda: None,
             iterations: None,
+            start: None,
             seed: 0,
             edges: Edges::default(),
             borders: None,

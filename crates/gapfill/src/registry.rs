@@ -94,25 +94,25 @@ pub const METHODS: &[Method] = &[
     Method {
         id: "dynammo",
         summary: "a linear dynamical system as Li et al. published it in 2009; for comparison",
-        options: &["frame", "hidden", "iterations", "seed", "borders"],
+        options: &["frame", "hidden", "iterations", "start", "seed", "borders"],
         build: |options| dynamical_system(LdsFillerParams::dynammo(), Borders::Keep, options),
     },
     Method {
         id: "lds",
         summary: "a linear dynamical system by exact EM; tells how sure it is; needs no bones",
-        options: &["frame", "hidden", "iterations", "seed", "borders"],
+        options: &["frame", "hidden", "iterations", "start", "seed", "borders"],
         build: |options| dynamical_system(LdsFillerParams::default(), Borders::Join, options),
     },
     Method {
         id: "bolero-sc",
         summary: "a linear dynamical system that keeps bone lengths; for long gaps of several markers",
-        options: &["bones", "lambda", "frame", "hidden", "iterations", "seed", "borders"],
+        options: &["bones", "lambda", "frame", "hidden", "iterations", "start", "seed", "borders"],
         build: soft_bones,
     },
     Method {
         id: "bolero-hc",
         summary: "the same with exact bone lengths; lists the frames in which they cannot be kept",
-        options: &["bones", "frame", "hidden", "iterations", "seed", "borders"],
+        options: &["bones", "frame", "hidden", "iterations", "start", "seed", "borders"],
         build: hard_bones,
     },
 ];
@@ -216,6 +216,7 @@ fn model(defaults: LdsFillerParams, options: &Options) -> LdsFillerParams {
     LdsFillerParams {
         hidden: options.hidden.or(defaults.hidden),
         iterations: options.iterations.unwrap_or(defaults.iterations),
+        start: options.start.unwrap_or(defaults.start),
         seed: options.seed,
         coordinates,
         ..defaults

@@ -252,6 +252,7 @@ impl MethodArgs {
             hidden: self.hidden,
             lambda: self.lambda,
             iterations: self.iterations,
+            start: None,
             seed: self.seed,
             edges: match self.edges {
                 EdgesArg::Refuse => Edges::Refuse,

@@ -2,12 +2,13 @@ use std::{fmt, time::Instant};
 
 use gapfill::{Bones, Options};
 use mocap_core::{
-    BodyFrame, BodyMarkers, BoneRule, BoneSet, CoreError, Holdout, MarkerKnowledge, Take, UpAxis,
+    BodyFrame, BodyMarkers, BoneRule, BoneSet, CoreError, Filled, GapFiller, Holdout,
+    MarkerKnowledge, Take, UpAxis,
 };
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use crate::{Motion, ReproError, Trial, VERSION, Variant, motions::hex};
+use crate::{Motion, Outcome, ReproError, Trial, VERSION, Variant, motions::hex};
 
 /// Coordinates in which a method is run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -51,41 +52,16 @@ impl fmt::Display for Knowledge {
     }
 }
 
-/// What became of one cell of the matrix.
-///
-/// Errors are `None` where no hidden sample was filled.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Outcome {
-    /// Mean square error per hidden coordinate in m², over the samples that were filled.
-    pub mse_m2: Option<f64>,
-    /// Mean 3-D error in mm.
-    pub mean_mm: Option<f64>,
-    /// Median 3-D error in mm.
-    pub median_mm: Option<f64>,
-    /// 95 % quantile of the 3-D error in mm.
-    pub p95_mm: Option<f64>,
-    /// Mean deviation in mm from the true mean bone lengths, over the bones that touch a hidden sample.
-    pub bone_mm: Option<f64>,
-    /// Hidden samples.
-    pub hidden: usize,
-    /// Hidden samples that were left open.
-    pub unfilled: usize,
-    /// Iterations done.
-    pub iterations: usize,
-    /// Why the method ended.
-    pub termination: String,
-    /// Time of the fill in seconds, on one thread.
+/// A fill and the time it took, on one thread.
+pub(crate) struct Filling {
+    pub filled: Filled,
     pub seconds: f64,
-    /// Why the method could not run.
-    pub error: Option<String>,
 }
 
-impl Outcome {
-    /// Whether two outcomes are the same but for the time they took.
-    #[must_use]
-    pub fn same_result(&self, other: &Self) -> bool {
-        Self { seconds: 0.0, ..self.clone() } == Self { seconds: 0.0, ..other.clone() }
-    }
+/// Why there is no fill, and the time it took to find out.
+pub(crate) struct Failure {
+    pub error: Box<dyn std::error::Error + Send + Sync>,
+    pub seconds: f64,
 }
 
 /// One computation. Two cells that ask for the same one share its key and are computed once.
@@ -108,8 +84,26 @@ impl Job<'_> {
         self.knowledge == Knowledge::Oracle && self.coordinates == Coordinates::Body
     }
 
-    fn limit(&self) -> Option<usize> {
+    /// Iterations at most, if it is not the method's own number.
+    pub(crate) fn limit(&self) -> Option<usize> {
         self.trial.iterations.or(self.iterations)
+    }
+
+    fn options(&self) -> Options {
+        Options { seed: self.trial.seed, iterations: self.limit(), ..self.variant.options() }
+    }
+
+    /// Refuses options that the method refuses.
+    ///
+    /// # Errors
+    /// [`ReproError::Method`].
+    pub(crate) fn check(&self) -> Result<(), ReproError> {
+        self.method(&self.options()).map(drop)
+    }
+
+    fn method(&self, options: &Options) -> Result<Box<dyn GapFiller>, ReproError> {
+        gapfill::build(self.variant.id(), options)
+            .map_err(|source| ReproError::Method { text: self.variant.label().to_owned(), source })
     }
 
     /// A hash of all that the result depends on.
@@ -134,17 +128,41 @@ impl Job<'_> {
     /// [`ReproError`] for a trial that does not fit its motion; what the method itself refuses is an
     /// [`Outcome::error`].
     pub(crate) fn compute(&self) -> Result<Outcome, ReproError> {
+        let (holdout, result) = self.fill()?;
+        let Filling { filled, seconds } = match result {
+            Ok(filling) => filling,
+            Err(Failure { error, seconds }) => {
+                return Ok(Outcome::failed(&holdout, seconds, error.as_ref()));
+            }
+        };
+        let bones = true_bones(holdout.truth(), &self.variant.options().known)?;
+        Ok(Outcome::of(&holdout, &filled, &bones, seconds)
+            .unwrap_or_else(|error| Outcome::failed(&holdout, seconds, &error)))
+    }
+
+    /// Hides and fills; the take is in the coordinates of the job.
+    ///
+    /// # Errors
+    /// As [`compute`](Self::compute).
+    pub(crate) fn fill(&self) -> Result<(Holdout, Result<Filling, Failure>), ReproError> {
         let world = self.trial.cut(self.motion.take())?;
-        let mut options =
-            Options { seed: self.trial.seed, iterations: self.limit(), ..self.variant.options() };
+        let mut options = self.options();
         if self.oracle_bones() {
             options.bones = Bones::Given(true_bones(world.truth(), &options.known)?);
         }
         let holdout = match self.place(&world, &mut options) {
             Ok(local) => local.unwrap_or(world),
-            Err(error) => return Ok(failed(&world, 0.0, &error)),
+            Err(error) => return Ok((world, Err(Failure { error: error.into(), seconds: 0.0 }))),
         };
-        self.fill(&holdout, &options)
+        let method = self.method(&options)?;
+        let start = Instant::now();
+        let filled = method.fill(holdout.visible());
+        let seconds = start.elapsed().as_secs_f64();
+        let result = match filled {
+            Ok(filled) => Ok(Filling { filled, seconds }),
+            Err(error) => Err(Failure { error: error.into(), seconds }),
+        };
+        Ok((holdout, result))
     }
 
     /// The trial in the coordinates that the method shall see, or the coordinates it is told to take.
@@ -166,44 +184,10 @@ impl Job<'_> {
         let local = body_frame(source)?.localise(world.truth())?;
         Holdout::new(local, world.hidden()).map(Some)
     }
-
-    fn fill(&self, holdout: &Holdout, options: &Options) -> Result<Outcome, ReproError> {
-        let method = gapfill::build(self.variant.id(), options).map_err(|source| {
-            ReproError::Method { text: self.variant.label().to_owned(), source }
-        })?;
-        let start = Instant::now();
-        let filled = method.fill(holdout.visible());
-        let seconds = start.elapsed().as_secs_f64();
-        let filled = match filled {
-            Ok(filled) => filled,
-            Err(error) => return Ok(failed(holdout, seconds, &error)),
-        };
-        let (truth, take, hidden) = (holdout.truth(), filled.take(), holdout.hidden());
-        let score = match metrics::score(truth, take, hidden) {
-            Ok(score) => score,
-            Err(error) => return Ok(failed(holdout, seconds, &error)),
-        };
-        let bones = true_bones(truth, &options.known)?;
-        let deviation = metrics::bone_deviation(take, &bones, Some(hidden));
-        let finite = |value: f64| value.is_finite().then_some(value);
-        Ok(Outcome {
-            mse_m2: finite(score.mse_m2),
-            mean_mm: finite(score.mean_mm),
-            median_mm: finite(score.median_mm),
-            p95_mm: finite(score.p95_mm),
-            bone_mm: deviation.ok().and_then(|deviation| finite(deviation.mean_mm)),
-            hidden: score.hidden_cells,
-            unfilled: score.unfilled_cells,
-            iterations: filled.report().iterations,
-            termination: filled.report().termination.as_str().to_owned(),
-            seconds,
-            error: None,
-        })
-    }
 }
 
 /// Bones of the complete motion.
-fn true_bones(truth: &Take, known: &[MarkerKnowledge]) -> Result<BoneSet, CoreError> {
+pub(crate) fn true_bones(truth: &Take, known: &[MarkerKnowledge]) -> Result<BoneSet, CoreError> {
     BoneSet::estimate(truth, &BoneRule::Known(known.to_vec()))
 }
 
@@ -212,27 +196,4 @@ fn body_frame(take: &Take) -> Result<BodyFrame, CoreError> {
     let markers = BodyMarkers::find(take, &known).ok_or(CoreError::NoBodyFrame)?;
     let up = UpAxis::guess(take, &known).ok_or(CoreError::NoBodyFrame)?;
     BodyFrame::estimate(take, &markers, up)
-}
-
-fn failed(holdout: &Holdout, seconds: f64, error: &dyn std::error::Error) -> Outcome {
-    let hidden = holdout.hidden().count();
-    let mut reason = error.to_string();
-    let mut source = error.source();
-    while let Some(cause) = source {
-        reason = format!("{reason}: {cause}");
-        source = cause.source();
-    }
-    Outcome {
-        mse_m2: None,
-        mean_mm: None,
-        median_mm: None,
-        p95_mm: None,
-        bone_mm: None,
-        hidden,
-        unfilled: hidden,
-        iterations: 0,
-        termination: "failed".to_owned(),
-        seconds,
-        error: Some(reason),
-    }
 }

@@ -97,7 +97,9 @@ pub enum ReproError {
         methods: usize,
     },
     /// A name that is no protocol.
-    #[error("`{text}` is no protocol; the protocols are bolero-90, multi, limb and blackout")]
+    #[error(
+        "`{text}` is no protocol; the protocols are bolero-90, multi, limb, blackout, realistic and pseudo-gaps"
+    )]
     Protocol {
         /// As given.
         text: String,
@@ -125,10 +127,13 @@ pub enum ReproError {
     Write(#[from] mocap_io::WriteError),
     /// A figure that cannot be drawn.
     #[error("cannot draw a figure")]
-    Figure(#[source] Box<dyn std::error::Error + Send + Sync>),
+    Figure(#[from] mocap_report::ReportError),
     /// The threads cannot be started.
     #[error("cannot start the threads")]
     Threads(#[from] rayon::ThreadPoolBuildError),
+    /// Gaps that cannot be drawn.
+    #[error("cannot draw gaps")]
+    Sampler(#[from] augment::AugmentError),
     /// A value that the core types refuse.
     #[error(transparent)]
     Core(#[from] CoreError),

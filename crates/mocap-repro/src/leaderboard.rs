@@ -1,236 +1,114 @@
-use std::{fmt, path::Path, str::FromStr};
-
-use rand::RngExt as _;
-use rand::SeedableRng as _;
-use rand_chacha::ChaCha8Rng;
+use mocap_report::{Entry, draw::Pen};
 
 use crate::{
-    Entry, Finished, Hide, Motions, Reference, Report, ReproError, Row, Table, Trial,
-    bolero::{FOLDER, LIST, LIST_CLASS},
+    Finished, Reference, Report, Row, Section, Stats, Sureness,
+    bolero::Legend,
     compare,
-    figure::{Bars, Figure},
-    read_trials, reference,
+    figure::{Axis, Chart, Content, Dots, Figure, Key, Line, Mark, Panel, Panels, Points},
+    reference,
     report::{STATS_NOTE, stats_table},
     summarise,
+    summary::group,
+    sureness::{LENGTH_EDGES_S, MULTIPLES, length_class},
 };
 
-/// A rule by which gaps are cut.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Protocol {
-    /// The 90 trials with one marker over 10–50 % of a motion.
-    Bolero90,
-    /// 1, 3, 5 and 10 markers at once for 0.1, 0.5, 1 and 2 s.
-    Multi,
-    /// All markers of an arm or a leg for 0.5, 1 and 2 s.
-    Limb,
-    /// All markers for 10, 30 and 60 frames.
-    Blackout,
-}
-
-impl Protocol {
-    /// All protocols.
-    pub const ALL: [Self; 4] = [Self::Bolero90, Self::Multi, Self::Limb, Self::Blackout];
-}
-
-impl fmt::Display for Protocol {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Bolero90 => "bolero-90",
-            Self::Multi => "multi",
-            Self::Limb => "limb",
-            Self::Blackout => "blackout",
-        })
-    }
-}
-
-impl FromStr for Protocol {
-    type Err = ReproError;
-
-    fn from_str(text: &str) -> Result<Self, ReproError> {
-        let named = Self::ALL.into_iter().find(|protocol| protocol.to_string() == text);
-        named.ok_or_else(|| ReproError::Protocol { text: text.to_owned() })
-    }
-}
-
-const LIMBS: [(&str, &[&str]); 4] = [
-    ("left arm", &["LUPA", "LELB", "LFRM", "LWRA", "LWRB"]),
-    ("right arm", &["RUPA", "RELB", "RFRM", "RWRA", "RWRB"]),
-    ("left leg", &["LTHI", "LKNE", "LSHN", "LANK", "LHEE", "LTOE"]),
-    ("right leg", &["RTHI", "RKNE", "RSHN", "RANK", "RHEE", "RTOE"]),
-];
-const MARKERS_AT_ONCE: [usize; 4] = [1, 3, 5, 10];
-const MULTI_S: [f64; 4] = [0.1, 0.5, 1.0, 2.0];
-const LIMB_S: [f64; 3] = [0.5, 1.0, 2.0];
-const BLACKOUT_FRAMES: [usize; 3] = [10, 30, 60];
-/// Frames that stay visible on either side of a gap.
-const SEEN_FRAMES: usize = 10;
-
-/// The trials of a protocol on the given motions. A gap that no motion is long enough for leaves its
-/// class out; the rest depends on nothing but the motions' names, lengths and markers.
-///
-/// # Errors
-/// As [`read_trials`], for [`Protocol::Bolero90`], which reads its list from `data`.
-pub fn leaderboard_trials(
-    protocol: Protocol,
-    data: &Path,
-    motions: &Motions,
-) -> Result<Vec<Trial>, ReproError> {
-    if protocol == Protocol::Bolero90 {
-        let list = data.join(FOLDER).join(LIST);
-        return read_trials(&list, "bolero-90", LIST_CLASS);
-    }
-    let mut trials = Vec::new();
-    // Class by class, so that the tables read in order of difficulty.
-    match protocol {
-        Protocol::Multi => {
-            for count in MARKERS_AT_ONCE {
-                for seconds in MULTI_S {
-                    let noun = if count == 1 { "marker" } else { "markers" };
-                    let class = format!("{count} {noun}, {seconds} s");
-                    trials.extend(cut(
-                        protocol,
-                        &class,
-                        motions,
-                        Length::Seconds(seconds),
-                        |draw| draw.some(count),
-                    ));
-                }
-            }
-        }
-        Protocol::Limb => {
-            for seconds in LIMB_S {
-                for (limb, markers) in LIMBS {
-                    let class = format!("{limb}, {seconds} s");
-                    trials.extend(cut(
-                        protocol,
-                        &class,
-                        motions,
-                        Length::Seconds(seconds),
-                        |draw| draw.these(markers),
-                    ));
-                }
-            }
-        }
-        Protocol::Blackout => {
-            for frames in BLACKOUT_FRAMES {
-                let class = format!("all markers, {frames} frames");
-                trials.extend(cut(protocol, &class, motions, Length::Frames(frames), |_| {
-                    vec!["*".to_owned()]
-                }));
-            }
-        }
-        Protocol::Bolero90 => {}
-    }
-    Ok(trials)
-}
-
-#[derive(Clone, Copy)]
-enum Length {
-    Seconds(f64),
-    Frames(usize),
-}
-
-impl Length {
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a few seconds
-    fn frames(self, rate_hz: f64) -> usize {
-        match self {
-            Self::Frames(frames) => frames,
-            Self::Seconds(seconds) => (seconds * rate_hz).round() as usize,
-        }
-    }
-}
-
-/// Chooses markers of one motion.
-struct Draw<'a> {
-    rng: ChaCha8Rng,
-    names: &'a [String],
-}
-
-impl Draw<'_> {
-    /// So many different markers, or none if the motion has too few.
-    fn some(&mut self, count: usize) -> Vec<String> {
-        let mut left: Vec<&String> = self.names.iter().collect();
-        // A neighbour has to stay.
-        if left.len() <= count {
-            return Vec::new();
-        }
-        (0..count).map(|_| left.swap_remove(self.rng.random_range(0..left.len())).clone()).collect()
-    }
-
-    /// Those of the named markers that the motion has.
-    fn these(&mut self, wanted: &[&str]) -> Vec<String> {
-        let bare = |name: &str| name.rsplit(':').next().unwrap_or(name).to_owned();
-        self.names.iter().filter(|name| wanted.contains(&bare(name).as_str())).cloned().collect()
-    }
-}
-
-/// One trial a motion.
-fn cut(
-    protocol: Protocol,
-    class: &str,
-    motions: &Motions,
-    length: Length,
-    choose: impl Fn(&mut Draw<'_>) -> Vec<String>,
-) -> Vec<Trial> {
-    let trial = |(name, motion): (&String, &std::sync::Arc<crate::Motion>)| {
-        let take = motion.take();
-        let frames = length.frames(take.rate_hz());
-        let last_start = take.frames().checked_sub(frames + SEEN_FRAMES)?;
-        if frames == 0 || last_start < SEEN_FRAMES {
-            return None;
-        }
-        let seed = seed(&[&protocol.to_string(), class, name]);
-        let rng = ChaCha8Rng::seed_from_u64(seed);
-        let mut draw = Draw { rng, names: take.markers().names() };
-        let markers = choose(&mut draw);
-        let start = draw.rng.random_range(SEEN_FRAMES..=last_start);
-        let hide = |marker: String| Hide { marker, start, end: start + frames };
-        let hidden: Vec<Hide> = markers.into_iter().map(hide).collect();
-        (!hidden.is_empty()).then(|| Trial {
-            set: protocol.to_string(),
-            class: class.to_owned(),
-            name: format!("{name}, {class}"),
-            motion: name.clone(),
-            hidden,
-            seed: 1,
-            iterations: None,
-        })
-    };
-    motions.iter().filter_map(trial).collect()
-}
-
-/// A seed for each place in the protocols, so that adding one changes no other: the FNV-1a hash.
-fn seed(words: &[&str]) -> u64 {
-    let bytes = words.iter().flat_map(|word| word.bytes().chain([0]));
-    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-    })
-}
+/// The set of trials whose gaps are of many lengths, so that its rows are told apart by length.
+const MIXED: &str = "realistic";
+/// Class of a calibration over gaps of all lengths, and set of one over all protocols.
+const ALL: &str = "all";
 
 /// The leader board from finished cells.
 #[must_use]
 pub fn leaderboard_report(cells: &[Finished<'_>]) -> Report {
-    let rows = summarise(cells);
+    let mut rows = summarise(cells);
+    rows.extend(by_length(cells));
+    let legend = Legend::of(cells.iter().map(|cell| cell.variant.label()));
     let compared = compare(&rows, &Reference::built_in());
-    let mut tables = vec![overview(&rows)];
-    if !compared.is_empty() {
-        tables.push(reference::table(&compared));
-    }
+    let statistics = [
+        (
+            "overview",
+            "Mean error by protocol and gap",
+            "Mean over trials of a trial's mean",
+            mm_mean as Pick,
+        ),
+        (
+            "median",
+            "Median error by protocol and gap",
+            "Median over trials of a trial's mean",
+            |s| s.mm_median,
+        ),
+        (
+            "p95",
+            "95 % quantile by protocol and gap",
+            "Mean over trials of a trial's 95 % quantile",
+            |s| s.mm_p95,
+        ),
+        (
+            "seconds",
+            "Seconds a trial by protocol and gap",
+            "Mean over trials, on one thread",
+            |s| s.seconds,
+        ),
+    ];
+    let mut sections: Vec<Section> = statistics
+        .into_iter()
+        .map(|(id, title, note, pick)| overview(&rows, id, title, note, pick))
+        .collect();
+    let sure = calibration(cells);
+    sections.push(calibration_table(&sure));
+    sections.push(reference::table(&compared));
+    sections.retain(|section| !section.table.is_empty());
     let all: Vec<&Row> = rows.iter().collect();
-    tables.push(stats_table("leaderboard", "Every figure", STATS_NOTE, &all));
-    let figures = sets(&rows).into_iter().map(|set| bars(&rows, set)).collect();
+    sections.push(stats_table("leaderboard", "Every figure", STATS_NOTE, &all));
+    let mut figures: Vec<Figure> =
+        sets(&rows).into_iter().map(|set| dots(&rows, set, &legend)).collect();
+    figures.extend(reliability(&sure, &legend));
     Report {
         title: "Leader board of the gap-filling methods".to_owned(),
         intro: vec![
             "Every method sees the visible samples and nothing else, and chooses its own coordinates."
                 .to_owned(),
         ],
-        tables,
+        findings: Vec::new(),
+        sections,
         figures,
         rows,
         duels: Vec::new(),
         compared,
     }
+}
+
+/// The cells of mixed gaps by class of length, each trial counting once in each of its classes.
+fn by_length(cells: &[Finished<'_>]) -> Vec<Row> {
+    let mixed = cells.iter().filter(|cell| cell.trial.set == MIXED);
+    let parts: Vec<(&Finished<'_>, usize, crate::Outcome)> = mixed
+        .flat_map(|cell| {
+            let classes = cell.outcome.by_length.iter();
+            classes.map(move |class| (cell, class.class, class.alone(&cell.outcome)))
+        })
+        .collect();
+    let mut rows = Vec::new();
+    for class in 0..=LENGTH_EDGES_S.len() {
+        let own: Vec<_> = parts.iter().filter(|part| part.1 == class).collect();
+        let mut methods: Vec<&str> = Vec::new();
+        for (cell, _, _) in &own {
+            if !methods.contains(&cell.variant.label()) {
+                methods.push(cell.variant.label());
+            }
+        }
+        rows.extend(methods.into_iter().map(|method| {
+            let of_method = own.iter().filter(|part| part.0.variant.label() == method);
+            Row {
+                set: MIXED.to_owned(),
+                class: length_class(class),
+                coordinates: own[0].0.coordinates,
+                knowledge: own[0].0.knowledge,
+                method: method.to_owned(),
+                stats: Stats::of(of_method.map(|part| &part.2)),
+            }
+        }));
+    }
+    rows
 }
 
 fn distinct<'a>(rows: &'a [Row], of: impl Fn(&'a Row) -> &'a str) -> Vec<&'a str> {
@@ -247,44 +125,192 @@ fn sets(rows: &[Row]) -> Vec<&str> {
     distinct(rows, |row| &row.set)
 }
 
-fn mean_mm(rows: &[Row], set: &str, class: &str, method: &str) -> Option<f64> {
-    let is_it = |row: &&Row| row.set == set && row.class == class && row.method == method;
-    rows.iter().find(is_it)?.stats.mm_mean
+type Pick = fn(&Stats) -> Option<f64>;
+
+fn mm_mean(stats: &Stats) -> Option<f64> {
+    stats.mm_mean
 }
 
-/// Methods by protocol and gap: mean error.
-fn overview(rows: &[Row]) -> Table {
+fn value(rows: &[Row], set: &str, class: &str, method: &str, pick: Pick) -> Option<f64> {
+    let is_it = |row: &&Row| row.set == set && row.class == class && row.method == method;
+    pick(&rows.iter().find(is_it)?.stats)
+}
+
+/// Methods by protocol and gap: one statistic.
+fn overview(rows: &[Row], id: &str, title: &str, what: &str, pick: Pick) -> Section {
     let methods = distinct(rows, |row| &row.method);
     let mut columns = vec!["protocol", "gap"];
     columns.extend(&methods);
-    let note = "Mean 3-D error in mm, mean over trials. An en dash: nothing was filled; the full table \
-                says how many samples each method left open. A motion too short for a gap has no part \
-                in its row: see n.";
-    let mut table = Table::new("overview", "Mean error by protocol and gap", note, &columns);
+    let unit = if id == "seconds" { "" } else { ", in mm" };
+    let decimals = if id == "seconds" { 3 } else { 1 };
+    let note = format!(
+        "{what}{unit}. An en dash: nothing was filled; the full table says how many samples each method \
+         left open, and on how many trials the row rests."
+    );
+    let mut lines = Vec::new();
     for set in sets(rows) {
         let own: Vec<Row> = rows.iter().filter(|row| row.set == set).cloned().collect();
         for class in distinct(&own, |row| &row.class) {
             let mut row = vec![Entry::text(set), Entry::text(class)];
-            let mean = |method: &&str| Entry::Fixed(mean_mm(rows, set, class, method), 1);
-            row.extend(methods.iter().map(mean));
-            table.rows.push(row);
+            let of = |method: &&str| Entry::number(value(rows, set, class, method, pick), decimals);
+            row.extend(methods.iter().map(of));
+            lines.push(row);
         }
     }
-    table
+    Section::new(id, title, &note, &columns, lines)
 }
 
-fn bars(rows: &[Row], set: &str) -> Figure {
+fn dots(rows: &[Row], set: &str, legend: &Legend<'_>) -> Figure {
     let own: Vec<Row> = rows.iter().filter(|row| row.set == set).cloned().collect();
     let classes = distinct(&own, |row| &row.class);
     let series = distinct(&own, |row| &row.method).into_iter().map(|method| {
-        let means = classes.iter().map(|class| mean_mm(rows, set, class, method)).collect();
-        (method.to_owned(), means)
+        let means = classes.iter().map(|class| value(rows, set, class, method, mm_mean));
+        (method.to_owned(), legend.style(method), means.collect())
     });
-    Figure::Bars(Bars {
+    Figure {
         id: format!("leaderboard-{set}"),
         title: format!("Mean 3-D error, protocol {set}"),
-        y_label: "mean 3-D error [mm]".to_owned(),
-        series: series.collect(),
-        groups: classes.into_iter().map(str::to_owned).collect(),
+        caption:
+            "Mean over trials, on a logarithmic axis: further left is better. A method without a \
+                  mark left all samples open."
+                .to_owned(),
+        content: Content::Dots(Dots {
+            x_label: "mean 3-D error [mm]".to_owned(),
+            series: series.collect(),
+            rows: classes.into_iter().map(str::to_owned).collect(),
+        }),
+    }
+}
+
+/// What became of a method's sigmas in one protocol, or in all, and in one class of lengths, or in all.
+struct Sure<'a> {
+    set: &'a str,
+    class: String,
+    method: &'a str,
+    counts: Sureness,
+}
+
+fn calibration<'a>(cells: &'a [Finished<'_>]) -> Vec<Sure<'a>> {
+    let mut sure = Vec::new();
+    let mut add = |set, class, method, parts: Vec<&Sureness>| {
+        let counts = Sureness::sum(parts);
+        if counts.samples > 0 {
+            sure.push(Sure { set, class, method, counts });
+        }
+    };
+    for (method, own) in group(cells, |cell| cell.variant.label()) {
+        let of_class = |own: &[&'a Finished<'_>], class: Option<usize>| -> Vec<&'a Sureness> {
+            own.iter()
+                .flat_map(|cell| &cell.outcome.by_length)
+                .filter(|length| class.is_none_or(|class| length.class == class))
+                .map(|length| &length.sureness)
+                .collect()
+        };
+        add(ALL, ALL.to_owned(), method, of_class(&own, None));
+        for class in 0..=LENGTH_EDGES_S.len() {
+            add(ALL, length_class(class), method, of_class(&own, Some(class)));
+        }
+        let cells: Vec<Finished<'_>> = own.iter().map(|cell| (*cell).clone()).collect();
+        for set in group(&cells, |cell| cell.trial.set.clone()).into_iter().map(|(set, _)| set) {
+            let of_set: Vec<&Finished<'_>> =
+                own.iter().copied().filter(|cell| cell.trial.set == set).collect();
+            let set = of_set[0].trial.set.as_str();
+            add(set, ALL.to_owned(), method, of_class(&of_set, None));
+        }
+    }
+    sure
+}
+
+fn calibration_table(sure: &[Sure<'_>]) -> Section {
+    let percent = |share: Option<f64>| Entry::number(share.map(|share| 100.0 * share), 1);
+    let row = |sure: &Sure<'_>| {
+        vec![
+            Entry::text(sure.method),
+            Entry::text(sure.set),
+            Entry::text(&sure.class),
+            Entry::count(sure.counts.samples),
+            percent(sure.counts.share_within(1.0)),
+            percent(sure.counts.share_within(2.0)),
+            Entry::number(sure.counts.rms_ratio(), 2),
+        ]
+    };
+    Section::new(
+        "calibration",
+        "Calibration: errors beside the sigma that a method states",
+        "Share of the filled samples whose 3-D error is at most 1 and 2 sigma; 68 and 95 % is honest. `rms \
+         error by sigma`: 1 is honest, above 1 sigma is too small. Methods without sigma are left out.",
+        &[
+            "method",
+            "protocol",
+            "gaps",
+            "samples",
+            "within 1 sigma %",
+            "within 2 sigma %",
+            "rms error by sigma",
+        ],
+        sure.iter().map(row),
+    )
+}
+
+/// Share of samples within multiples of sigma, over that of a normal law.
+fn reliability(sure: &[Sure<'_>], legend: &Legend<'_>) -> Option<Figure> {
+    let overall: Vec<&Sure<'_>> = sure.iter().filter(|sure| sure.set == ALL).collect();
+    let mut classes: Vec<&str> = Vec::new();
+    let order = std::iter::once(ALL.to_owned()).chain((0..=LENGTH_EDGES_S.len()).map(length_class));
+    for class in order {
+        classes.extend(overall.iter().find(|s| s.class == class).map(|s| s.class.as_str()));
+    }
+    let nominal = metrics::Calibration::nominal_share;
+    let curve = |sure: &Sure<'_>| -> Vec<(f64, f64)> {
+        let points =
+            MULTIPLES.map(|m| sure.counts.share_within(m).map(|share| (nominal(m), share)));
+        std::iter::once((0.0, 0.0)).chain(points.into_iter().flatten()).collect()
+    };
+    let chart = |class: &&str| {
+        let own: Vec<&&Sure<'_>> = overall.iter().filter(|sure| sure.class == **class).collect();
+        let line = |sure: &&&Sure<'_>| Line {
+            points: curve(sure),
+            pen: Pen::solid(legend.style(sure.method).colour, 1.8),
+        };
+        let points = |sure: &&&Sure<'_>| Points {
+            at: [1.0, 2.0]
+                .into_iter()
+                .filter_map(|m| Some((nominal(m), sure.counts.share_within(m)?)))
+                .collect(),
+            style: legend.style(sure.method),
+            radius: 4.5,
+        };
+        let samples = own.iter().map(|sure| sure.counts.samples).max().unwrap_or(0);
+        let heading = if **class == *ALL { "gaps of all lengths" } else { *class };
+        Panel::Chart(Box::new(Chart {
+            heading: format!("{heading} (up to {samples} samples)"),
+            x: Axis::linear(0.0, 1.0),
+            y: Axis::linear(0.0, 1.0),
+            names: Vec::new(),
+            x_label: "share that a normal law has within k sigma".to_owned(),
+            y_label: "share of samples within k sigma".to_owned(),
+            shade: None,
+            diagonal: true,
+            lines: own.iter().map(line).collect(),
+            points: own.iter().map(points).collect(),
+        }))
+    };
+    let methods = overall.iter().filter(|sure| sure.class == ALL);
+    let keys = methods.map(|sure| Key {
+        name: sure.method.to_owned(),
+        mark: Mark::Shape(legend.style(sure.method)),
+    });
+    (!classes.is_empty()).then(|| Figure {
+        id: "reliability".to_owned(),
+        title: "Reliability of the stated sigma".to_owned(),
+        caption: "On the diagonal a method is as sure as it may be; below, its sigma is too small, above, \
+                  too large. The marks are 1 and 2 sigma."
+            .to_owned(),
+        content: Content::Panels(Panels {
+            columns: 3,
+            row_height: 350.0,
+            cells: classes.iter().map(chart).collect(),
+            legend: keys.collect(),
+        }),
     })
 }

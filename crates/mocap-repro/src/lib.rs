@@ -8,26 +8,31 @@ mod leaderboard;
 mod matrix;
 mod method;
 mod motions;
-mod page;
+mod outcome;
+mod protocol;
 mod reference;
 mod report;
+mod section;
 mod store;
 mod summary;
-mod table;
+mod sureness;
 mod trial;
 
-pub use bolero::{bolero_report, bolero_trials};
-pub use cell::{Coordinates, Knowledge, Outcome};
+pub use bolero::{Evaluation, bolero_report};
+pub use cell::{Coordinates, Knowledge};
 pub use error::ReproError;
-pub use leaderboard::{Protocol, leaderboard_report, leaderboard_trials};
+pub use leaderboard::leaderboard_report;
 pub use matrix::{Finished, Matrix, Progress, run};
 pub use method::Variant;
 pub use motions::{Motion, Motions};
+pub use outcome::{LengthOutcome, Outcome};
+pub use protocol::{Protocol, protocol_trials};
 pub use reference::{Compared, Reference, compare};
 pub use report::Report;
+pub use section::Section;
 pub use store::Store;
 pub use summary::{Duel, Row, Stats, duels, summarise};
-pub use table::{Entry, Table};
+pub use sureness::{LENGTH_EDGES_S, MULTIPLES, Sureness};
 pub use trial::{Hide, Trial, fixture_trials, read_trials};
 
 /// What tells the results of two builds apart: the version of this crate, and a fingerprint of the

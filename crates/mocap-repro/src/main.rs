@@ -2,21 +2,21 @@
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a command-line program")]
 
 use std::{
-    collections::BTreeSet,
     fs,
-    io::IsTerminal,
     path::{Path, PathBuf},
     process::ExitCode,
 };
 
 use anyhow::{Context, Result};
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use indicatif::{ProgressBar, ProgressStyle};
 use mocap_repro::{
-    Coordinates, Knowledge, Matrix, Motion, Motions, Progress, Protocol, Report, Store, Trial,
-    Variant, bolero_report, bolero_trials, fixture_trials, leaderboard_report, leaderboard_trials,
-    run,
+    Coordinates, Evaluation, Knowledge, Matrix, Motion, Motions, Protocol, Report, Store, Trial,
+    Variant, bolero_report, fixture_trials, leaderboard_report, protocol_trials, run,
 };
+
+mod meter;
+
+use meter::Meter;
 
 /// Runs every gap-filling method on the same gaps, and sets the results beside the published ones.
 ///
@@ -34,7 +34,9 @@ enum Task {
     Leaderboard(Leaderboard),
 }
 
-/// The evaluation of the BoLeRO paper: case studies, 90 trials, tables and figures
+/// The evaluation of the BoLeRO paper: case studies, 90 trials twice over, sweeps, tables and figures
+///
+/// Without --methods: every method of the registry, and bolero-sc without bones.
 #[derive(Args)]
 struct Bolero {
     /// Coordinates to run in; may be given several times [default: body]
@@ -45,10 +47,14 @@ struct Bolero {
 }
 
 /// Every method on the protocols of the leader board
+///
+/// `pseudo-gaps` is no part of the board: it is the protocol on which parameters may be chosen, for
+/// instance with --protocol pseudo-gaps --methods ridge,bolero-sc+lambda=1e4,bolero-sc+lambda=1e6.
 #[derive(Args)]
 struct Leaderboard {
-    /// bolero-90, multi, limb or blackout; may be given several times [default: all]
-    #[arg(long)]
+    /// bolero-90, multi, limb, blackout, realistic or pseudo-gaps; several with commas between
+    /// [default: all but pseudo-gaps]
+    #[arg(long, value_delimiter = ',', value_name = "A,B,…")]
     protocol: Vec<String>,
     #[command(flatten)]
     common: Common,
@@ -99,30 +105,30 @@ fn main() -> ExitCode {
     }
 }
 
+/// The soft bone lengths without bones: what of a result is due to the bones.
+const ABLATION: &str = "bolero-sc+lambda=0";
+
 impl Bolero {
     fn run(&self) -> Result<()> {
         let common = &self.common;
-        let variants = Variant::parse_list(&common.methods)?;
-        let (trials, folder) = if common.quick {
-            (fixture_trials(), fixtures())
+        let mut variants = Variant::parse_list(&common.methods)?;
+        if common.methods.is_empty() {
+            variants.push(Variant::parse(ABLATION)?);
+        }
+        let evaluation = if common.quick {
+            Evaluation::of_fixtures(&fixtures())?
         } else {
-            let data = common.data()?;
-            (bolero_trials(&data)?, recordings(&data))
+            Evaluation::of_paper(&common.data()?)?
         };
-        let motions = Motion::read_all(&folder, trials.iter().map(|t| t.motion.as_str()))?;
         let coordinates = match self.coordinates.as_slice() {
             [] => vec![Coordinates::Body],
             some => some.iter().map(|frame| Coordinates::from(*frame)).collect(),
         };
-        let matrix = Matrix {
-            trials,
-            motions,
-            variants,
-            coordinates,
-            knowledge: vec![Knowledge::Oracle, Knowledge::Visible],
-            iterations: Some(common.iterations()),
-        };
-        common.execute(&matrix, "bolero", bolero_report)
+        let iterations = common.iterations();
+        let matrices = evaluation.matrices(&variants, &coordinates, iterations);
+        common.execute(&matrices, "bolero", |cells| {
+            Ok(bolero_report(&evaluation, &variants, iterations, cells)?)
+        })
     }
 }
 
@@ -131,58 +137,54 @@ impl Leaderboard {
         let common = &self.common;
         let variants = Variant::parse_list(&common.methods)?;
         let protocols = if self.protocol.is_empty() {
-            Protocol::ALL.to_vec()
+            Protocol::BOARD.to_vec()
         } else {
-            self.protocol.iter().map(|text| text.parse()).collect::<Result<_, _>>()?
+            self.protocol.iter().map(|text| text.trim().parse()).collect::<Result<_, _>>()?
         };
-        let (trials, motions) = if common.quick {
-            quick_board(&protocols)?
-        } else {
-            full_board(&protocols, &common.data()?)?
-        };
-        let matrix = Matrix {
+        let matrix = |(trials, motions): (Vec<Trial>, Motions)| Matrix {
             trials,
             motions,
-            variants,
+            variants: variants.clone(),
             coordinates: vec![Coordinates::Own],
             knowledge: vec![Knowledge::Visible],
             iterations: Some(common.iterations()),
         };
-        common.execute(&matrix, "leaderboard", leaderboard_report)
+        let cut = |protocol: &Protocol| {
+            if common.quick {
+                quick_board(*protocol)
+            } else {
+                full_board(*protocol, &common.data()?)
+            }
+        };
+        let matrices = protocols.iter().map(|protocol| Ok(matrix(cut(protocol)?)));
+        let matrices = matrices.collect::<Result<Vec<_>>>()?;
+        common.execute(&matrices, "leaderboard", |cells| Ok(leaderboard_report(cells)))
     }
 }
 
-fn full_board(protocols: &[Protocol], data: &Path) -> Result<(Vec<Trial>, Motions)> {
-    let folder = recordings(data);
-    let names: BTreeSet<String> =
-        bolero_trials(data)?.into_iter().map(|trial| trial.motion).collect();
-    let motions = Motion::read_all(&folder, names.iter().map(String::as_str))?;
-    let mut trials = Vec::new();
-    for &protocol in protocols {
-        trials.extend(leaderboard_trials(protocol, data, &motions)?);
-    }
-    Ok((trials, motions))
+fn full_board(protocol: Protocol, data: &Path) -> Result<(Vec<Trial>, Motions)> {
+    let motions = if protocol == Protocol::PseudoGaps {
+        Motion::read_aside(data)?
+    } else {
+        let listed = protocol_trials(Protocol::Bolero90, data, &Motions::new())?;
+        let names = listed.iter().map(|trial| trial.motion.as_str());
+        Motion::read_all(&data.join("cmu/bolero-nine"), names)?
+    };
+    Ok((protocol_trials(protocol, data, &motions)?, motions))
 }
 
 /// The short gaps of each protocol on two recordings; the fixtures' own list stands for `bolero-90`.
-fn quick_board(protocols: &[Protocol]) -> Result<(Vec<Trial>, Motions)> {
-    let motions = Motion::read_all(&fixtures(), ["run", "throw", "walk", "jump"])?;
-    let two: Motions =
-        motions.iter().filter(|(name, _)| *name == "run" || *name == "throw").map(clone).collect();
-    let mut trials = Vec::new();
-    for &protocol in protocols {
-        if protocol == Protocol::Bolero90 {
-            trials.extend(fixture_trials());
-        } else {
-            let all = leaderboard_trials(protocol, Path::new(""), &two)?;
-            trials.extend(all.into_iter().filter(|trial| !trial.class.ends_with(", 2 s")));
-        }
+fn quick_board(protocol: Protocol) -> Result<(Vec<Trial>, Motions)> {
+    if protocol == Protocol::Bolero90 {
+        let trials = fixture_trials();
+        let motions = Motion::read_all(&fixtures(), trials.iter().map(|t| t.motion.as_str()))?;
+        return Ok((trials, motions));
     }
+    let names = if protocol == Protocol::PseudoGaps { ["walk", "jump"] } else { ["run", "throw"] };
+    let motions = Motion::read_all(&fixtures(), names)?;
+    let mut trials = protocol_trials(protocol, Path::new(""), &motions)?;
+    trials.retain(|trial| !trial.class.ends_with(", 2 s"));
     Ok((trials, motions))
-}
-
-fn clone<A: Clone, B: Clone>((a, b): (&A, &B)) -> (A, B) {
-    (a.clone(), b.clone())
 }
 
 impl Common {
@@ -199,11 +201,11 @@ impl Common {
 
     fn execute(
         &self,
-        matrix: &Matrix,
+        matrices: &[Matrix],
         name: &str,
-        report: impl Fn(&[mocap_repro::Finished<'_>]) -> Report,
+        report: impl Fn(&[mocap_repro::Finished<'_>]) -> Result<Report>,
     ) -> Result<()> {
-        matrix.check()?;
+        matrices.iter().try_for_each(Matrix::check)?;
         fs::create_dir_all(&self.out)
             .with_context(|| format!("cannot make the folder {}", self.out.display()))?;
         let mut store = Store::open(&self.out.join("cells.jsonl"))?;
@@ -211,14 +213,11 @@ impl Common {
             eprintln!("{} broken lines of the cells file: computed again", store.dropped());
         }
         let threads = self.threads.or_else(|| std::thread::available_parallelism().ok());
-        let bar = bar();
-        let show = |progress: Progress| {
-            bar.set_length(progress.total as u64);
-            bar.set_position(progress.done as u64);
-        };
-        let cells = run(matrix, &mut store, threads.map_or(1, std::num::NonZero::get), &show)?;
-        bar.finish_and_clear();
-        let report = report(&cells);
+        let meter = Meter::new();
+        let threads = threads.map_or(1, std::num::NonZero::get);
+        let cells = run(matrices, &mut store, threads, &|progress| meter.show(progress))?;
+        meter.finish();
+        let report = report(&cells)?;
         let [markdown, page] = report.write(&self.out, name)?;
         if self.json {
             println!("{:#}", report.to_json());
@@ -239,21 +238,7 @@ impl From<Frame> for Coordinates {
     }
 }
 
-fn recordings(data: &Path) -> PathBuf {
-    data.join("cmu/bolero-nine")
-}
-
 /// The synthetic recordings of this workspace.
 fn fixtures() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures")
-}
-
-/// A bar on a terminal, nothing elsewhere; its unit is a frame, as long takes take longer.
-fn bar() -> ProgressBar {
-    if !std::io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let style = ProgressStyle::with_template("{bar:40} {percent} %  {elapsed} gone, {eta} to go")
-        .unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::new(0).with_style(style)
 }

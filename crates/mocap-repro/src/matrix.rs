@@ -48,23 +48,26 @@ pub struct Finished<'a> {
 /// How far a run is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Progress {
-    /// Work done, in frames.
+    /// Work done, in frames times iterations.
     pub done: usize,
-    /// Work altogether, in frames.
+    /// Work altogether; cells that were there before the run are in neither.
     pub total: usize,
 }
 
 impl Matrix {
-    /// Refuses a matrix with a trial that does not fit its motion, before any work.
+    /// Refuses a matrix with a trial that does not fit its motion, or a method that refuses its options,
+    /// before any work.
     ///
     /// # Errors
-    /// [`ReproError::Empty`], [`ReproError::Motion`], [`ReproError::Misfit`],
+    /// [`ReproError::Empty`], [`ReproError::Motion`], [`ReproError::Method`], [`ReproError::Misfit`],
     /// [`ReproError::NothingHidden`].
     pub fn check(&self) -> Result<(), ReproError> {
         let (trials, methods) = (self.trials.len(), self.variants.len());
-        if self.jobs()?.is_empty() {
+        let jobs = self.jobs()?;
+        if jobs.is_empty() {
             return Err(ReproError::Empty { trials, methods });
         }
+        jobs.iter().try_for_each(Job::check)?;
         self.trials.iter().try_for_each(|trial| {
             let motion = self.motion(trial)?;
             trial.cut(motion.take()).map(drop)
@@ -105,7 +108,7 @@ impl Matrix {
 }
 
 /// Runs what is not yet in the store, on as many threads as asked for, and returns all cells in the
-/// order of the matrix.
+/// order of the matrices. What several of them ask for is computed once.
 ///
 /// Each cell runs on one thread: its time is that of one core, and neither it nor any other result
 /// depends on the number of threads.
@@ -114,13 +117,16 @@ impl Matrix {
 /// As [`Matrix::check`], which comes first; [`ReproError::Io`] if a cell cannot be stored, and
 /// [`ReproError::Threads`].
 pub fn run<'a>(
-    matrix: &'a Matrix,
+    matrices: &'a [Matrix],
     store: &mut Store,
     threads: usize,
     observer: &(dyn Fn(Progress) + Sync),
 ) -> Result<Vec<Finished<'a>>, ReproError> {
-    matrix.check()?;
-    let jobs = matrix.jobs()?;
+    matrices.iter().try_for_each(Matrix::check)?;
+    let mut jobs = Vec::new();
+    for matrix in matrices {
+        jobs.extend(matrix.jobs()?);
+    }
     let keys: Vec<String> = jobs.iter().map(Job::key).collect();
     let mut seen = BTreeSet::new();
     let mut open: Vec<(&Job<'a>, &String)> = jobs
@@ -139,8 +145,10 @@ pub fn run<'a>(
     Ok(finished.collect())
 }
 
+/// Frames, times iterations for what iterates.
 fn work(job: &Job<'_>) -> usize {
-    job.motion.take().frames()
+    let rounds = if job.variant.reads("iterations") { job.limit().unwrap_or(100) } else { 1 };
+    job.motion.take().frames() * rounds
 }
 
 /// The open cells, taken one by one by several threads.

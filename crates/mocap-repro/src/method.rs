@@ -1,4 +1,4 @@
-use gapfill::{Borders, Edges, METHODS, Options};
+use gapfill::{Borders, Edges, METHODS, Options, Start};
 use serde::Serialize;
 
 use crate::ReproError;
@@ -18,9 +18,10 @@ pub(crate) struct Settings {
     lambda: Option<f64>,
     hidden: Option<usize>,
     keep_borders: Option<bool>,
+    random_start: Option<bool>,
 }
 
-const KEYS: [&str; 3] = ["lambda", "hidden", "borders"];
+const KEYS: [&str; 4] = ["lambda", "hidden", "borders", "start"];
 
 impl Variant {
     /// Every method of the registry, as it comes.
@@ -35,8 +36,8 @@ impl Variant {
         METHODS.iter().map(variant).collect()
     }
 
-    /// Reads `METHOD` or `METHOD+option=value+…`; the options are `lambda` (from 0), `hidden` (from 1)
-    /// and `borders` (`join` or `keep`), where the method reads them.
+    /// Reads `METHOD` or `METHOD+option=value+…`; the options are `lambda` (from 0), `hidden` (from 1),
+    /// `borders` (`join` or `keep`) and `start` (`random` or `subspace`), where the method reads them.
     ///
     /// # Errors
     /// [`ReproError::Method`] for a method that is not in the registry and for values out of range,
@@ -80,7 +81,8 @@ impl Variant {
         match key {
             "lambda" => settings.lambda = Some(value.parse().ok()?),
             "hidden" => settings.hidden = Some(value.parse().ok()?),
-            _ => settings.keep_borders = Some(borders(value)? == Borders::Keep),
+            "borders" => settings.keep_borders = Some(borders(value)? == Borders::Keep),
+            _ => settings.random_start = Some(start(value)? == Start::Random),
         }
         Some(())
     }
@@ -107,9 +109,10 @@ impl Variant {
     /// Options for the method. Gaps at the ends of a take are held, as the published code did, so
     /// that every hidden sample is scored.
     pub(crate) fn options(&self) -> Options {
-        let Settings { lambda, hidden, keep_borders } = self.settings;
+        let Settings { lambda, hidden, keep_borders, random_start } = self.settings;
         let borders = keep_borders.map(|keep| if keep { Borders::Keep } else { Borders::Join });
-        Options { lambda, hidden, borders, edges: Edges::Hold, ..Options::default() }
+        let start = random_start.map(|random| if random { Start::Random } else { Start::Subspace });
+        Options { lambda, hidden, borders, start, edges: Edges::Hold, ..Options::default() }
     }
 }
 
@@ -117,6 +120,14 @@ fn borders(text: &str) -> Option<Borders> {
     match text {
         "join" => Some(Borders::Join),
         "keep" => Some(Borders::Keep),
+        _ => None,
+    }
+}
+
+fn start(text: &str) -> Option<Start> {
+    match text {
+        "random" => Some(Start::Random),
+        "subspace" => Some(Start::Subspace),
         _ => None,
     }
 }

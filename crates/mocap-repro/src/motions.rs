@@ -4,8 +4,9 @@ use std::{
     sync::Arc,
 };
 
-use mocap_core::Take;
+use mocap_core::{CoreError, MarkerKnowledge, Take};
 use mocap_io::{MarkerFile, ReadOptions};
+use ndarray::s;
 use sha2::{Digest, Sha256};
 
 use crate::ReproError;
@@ -22,6 +23,19 @@ pub type Motions = BTreeMap<String, Arc<Motion>>;
 
 /// Sampling rate of the CMU recordings, whose tables state none.
 const CMU_RATE_HZ: f64 = 120.0;
+/// Recordings on which parameters may be chosen: other takes than the nine on which methods are
+/// compared, of several rooms and marker sets.
+const ASIDE: [&str; 7] = [
+    "cmu/paired/02_01.c3d",
+    "cmu/paired/05_13.c3d",
+    "cmu/paired/135_02.c3d",
+    "hdm05/paired/HDM_dg_06-03_03_120.c3d",
+    "captures/keenon+nimblephysics__nick_freeform_001.c3d",
+    "captures/keenon+nimblephysics__squat.c3d",
+    "hands/dfki_hand_embodiment_recording.tsv",
+];
+/// Longest part of such a recording that is used.
+const ASIDE_S: f64 = 12.0;
 const ENDINGS: [&str; 3] = ["c3d", "csv.gz", "csv"];
 
 impl Motion {
@@ -54,6 +68,31 @@ impl Motion {
         Ok(Self::new(MarkerFile::read(&path, &options)?.take().clone()))
     }
 
+    /// Reads the recordings of the protocol `pseudo-gaps` from the folder of all data: those of its list that
+    /// are there. Of each, the labelled markers that are seen most of the time are kept, and its
+    /// middle 12 s.
+    ///
+    /// # Errors
+    /// [`ReproError::Motion`] if none is there, [`ReproError::Read`] for one that cannot be read.
+    pub fn read_aside(data: &Path) -> Result<Motions, ReproError> {
+        let mut motions = Motions::new();
+        for file in ASIDE {
+            let path = data.join(file);
+            if path.is_file() {
+                let options = ReadOptions { rate_hz: Some(CMU_RATE_HZ), ..ReadOptions::default() };
+                let file_name = path.file_stem().unwrap_or_default().to_string_lossy();
+                let name = file_name.rsplit("__").next().unwrap_or_default().to_owned();
+                let take = tidied(MarkerFile::read(&path, &options)?.take())?;
+                motions.insert(name, Arc::new(Self::new(take)));
+            }
+        }
+        if motions.is_empty() {
+            let motion = ASIDE.join(", ");
+            return Err(ReproError::Motion { motion, folder: data.to_owned() });
+        }
+        Ok(motions)
+    }
+
     /// Reads each of the named recordings.
     ///
     /// # Errors
@@ -81,6 +120,35 @@ impl Motion {
     pub(crate) fn digest(&self) -> &str {
         &self.digest
     }
+}
+
+/// The labelled markers that are seen in nine tenths of the middle of a take, and that middle.
+///
+/// Files of captures hold reconstructed points without a name and points of models beside the markers;
+/// where the markers of the CMU set are among them, the others are left out.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // some thousand frames
+fn tidied(take: &Take) -> Result<Take, CoreError> {
+    let length = take.frames().min((ASIDE_S * take.rate_hz()).round() as usize);
+    let start = (take.frames() - length) / 2;
+    let seen = |m: usize| (start..start + length).filter(|&t| take.is_observed(t, m)).count();
+    let known = MarkerKnowledge::cmu_41();
+    let is_known = |m: usize| known.markers().iter().any(|name| name == take.markers().split(m).1);
+    let is_cmu = (0..take.marker_count()).filter(|&m| is_known(m)).count() >= CMU_AT_LEAST;
+    let keep: Vec<usize> = (0..take.marker_count())
+        .filter(|&m| {
+            10 * seen(m) >= 9 * length && if is_cmu { is_known(m) } else { named(take, m) }
+        })
+        .collect();
+    let take = take.select(&keep)?;
+    let middle = take.positions().slice(s![start..start + length, .., ..]).to_owned();
+    Take::from_positions(Arc::clone(take.markers()), take.rate_hz(), middle)
+}
+
+/// Markers of the CMU set by which a recording is known to wear it.
+const CMU_AT_LEAST: usize = 30;
+
+fn named(take: &Take, marker: usize) -> bool {
+    !take.markers().name(marker).starts_with(['*', '_'])
 }
 
 pub(crate) fn hex(bytes: &[u8]) -> String {

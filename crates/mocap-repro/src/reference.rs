@@ -1,6 +1,7 @@
+use mocap_report::Entry;
 use serde::{Deserialize, Serialize};
 
-use crate::{Coordinates, Entry, Knowledge, Row, Table};
+use crate::{Coordinates, Knowledge, Row, Section};
 
 /// A figure that somebody else measured, with its source.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -70,8 +71,26 @@ pub fn compare(rows: &[Row], references: &[Reference]) -> Vec<Compared> {
 }
 
 /// Ours beside theirs.
-pub(crate) fn table(compared: &[Compared]) -> Table {
-    let mut table = Table::new(
+pub(crate) fn table(compared: &[Compared]) -> Section {
+    let row = |both: &Compared| {
+        let theirs = &both.reference;
+        let value = |value| {
+            let small = theirs.figure.starts_with("mse");
+            if small { Entry::scientific(Some(value)) } else { Entry::number(Some(value), 2) }
+        };
+        vec![
+            Entry::text(&theirs.class),
+            Entry::text(theirs.coordinates),
+            Entry::text(theirs.knowledge),
+            Entry::text(&theirs.method),
+            Entry::text(theirs.figure.replace('_', " ")),
+            value(theirs.value),
+            value(both.ours),
+            Entry::number(Some(both.ratio()), 2),
+            Entry::text(&theirs.source),
+        ]
+    };
+    Section::new(
         "reference",
         "Reference figures beside ours",
         "Ratio: ours by the reference, so below 1 ours is the smaller. `mse` in m², `mm` in mm.",
@@ -86,27 +105,6 @@ pub(crate) fn table(compared: &[Compared]) -> Table {
             "ratio",
             "source",
         ],
-    );
-    table.rows = compared
-        .iter()
-        .map(|both| {
-            let theirs = &both.reference;
-            let value = |value| {
-                let small = theirs.figure.starts_with("mse");
-                if small { Entry::Scientific(Some(value)) } else { Entry::Fixed(Some(value), 2) }
-            };
-            vec![
-                Entry::text(&theirs.class),
-                Entry::text(theirs.coordinates),
-                Entry::text(theirs.knowledge),
-                Entry::text(&theirs.method),
-                Entry::text(theirs.figure.replace('_', " ")),
-                value(theirs.value),
-                value(both.ours),
-                Entry::Fixed(Some(both.ratio()), 2),
-                Entry::text(&theirs.source),
-            ]
-        })
-        .collect();
-    table
+        compared.iter().map(row),
+    )
 }

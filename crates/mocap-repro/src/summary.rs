@@ -1,6 +1,6 @@
 use serde::Serialize;
 
-use crate::{Coordinates, Finished, Knowledge, Outcome};
+use crate::{Coordinates, Finished, Knowledge, Outcome, Sureness};
 
 /// The trials of one group, by one method, under one set of conditions, taken together.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -47,6 +47,16 @@ pub struct Stats {
     pub mm_p95: Option<f64>,
     /// Mean over trials of the deviation from bone length in mm.
     pub bone_mm: Option<f64>,
+    /// Smallest trial.
+    pub mse_min: Option<f64>,
+    /// Mean over trials of the step at the borders of gaps in mm.
+    pub border_mm: Option<f64>,
+    /// Median over trials of the root mean square acceleration, fill by truth.
+    pub acceleration_ratio: Option<f64>,
+    /// Median over trials of the root mean square jerk, fill by truth.
+    pub jerk_ratio: Option<f64>,
+    /// What became of the stated sigmas, over the samples of all trials.
+    pub sureness: Sureness,
     /// Mean seconds a trial, on one thread.
     pub seconds: Option<f64>,
 }
@@ -69,13 +79,18 @@ impl Stats {
             hidden: all.iter().map(|outcome| outcome.hidden).sum(),
             unfilled: all.iter().map(|outcome| outcome.unfilled).sum(),
             mse_mean: mean(&mse),
-            mse_median: metrics::quantile(&mse, 0.5),
+            mse_median: median(&mse),
             mse_p75: metrics::quantile(&mse, 0.75),
             mse_max: mse.last().copied(),
             mm_mean: mean(&mm),
-            mm_median: metrics::quantile(&mm, 0.5),
+            mm_median: median(&mm),
             mm_p95: mean(&sorted(|outcome| outcome.p95_mm)),
             bone_mm: mean(&sorted(|outcome| outcome.bone_mm)),
+            mse_min: mse.first().copied(),
+            border_mm: mean(&sorted(|outcome| outcome.border_mm)),
+            acceleration_ratio: median(&sorted(|outcome| outcome.acceleration_ratio)),
+            jerk_ratio: median(&sorted(|outcome| outcome.jerk_ratio)),
+            sureness: Sureness::sum(&all.iter().map(|o| o.sureness()).collect::<Vec<_>>()),
             seconds: mean(&sorted(|outcome| Some(outcome.seconds))),
         }
     }
@@ -86,6 +101,7 @@ impl Stats {
             "mse_mean" => self.mse_mean,
             "mse_median" => self.mse_median,
             "mse_p75" => self.mse_p75,
+            "mse_min" => self.mse_min,
             "mse_max" => self.mse_max,
             "mm_mean" => self.mm_mean,
             "mm_median" => self.mm_median,
@@ -97,6 +113,10 @@ impl Stats {
 
 fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+}
+
+fn median(ascending: &[f64]) -> Option<f64> {
+    metrics::quantile(ascending, 0.5)
 }
 
 /// One row for each group, condition and method, in the order of the cells.

@@ -1,8 +1,7 @@
 use std::{collections::BTreeMap, fs, path::Path, process::Command};
 
 use mocap_repro::{
-    Hide, Matrix, Motion, Protocol, ReproError, Store, Trial, Variant, bolero_trials, read_trials,
-    run,
+    Evaluation, Hide, Matrix, Motion, Protocol, ReproError, Store, Trial, Variant, read_trials, run,
 };
 
 use crate::{fixtures, small_matrix};
@@ -19,10 +18,11 @@ fn unknown_methods_and_options_are_refused_with_what_there_is() {
     let refused = |text: &str| message(&Variant::parse(text).unwrap_err());
     assert!(refused("bolero").contains("bolero-sc"), "names the methods that there are");
     assert!(refused("linear+lambda=3").contains("`lambda=3`"));
-    assert!(refused("bolero-sc+beauty=1").contains("lambda, hidden, borders"));
+    assert!(refused("bolero-sc+beauty=1").contains("lambda, hidden, borders, start"));
     assert!(refused("bolero-sc+lambda=much").contains("lambda"));
     assert!(refused("bolero-sc+lambda=-1").contains("lambda"));
     assert!(refused("dynammo+hidden=0").contains("hidden"));
+    assert!(refused("dynammo+start=zero").contains("`start=zero`"));
     assert!(matches!("all".parse::<Protocol>(), Err(ReproError::Protocol { .. })));
     assert_eq!(Variant::parse("bolero-sc+lambda=100").unwrap().label(), "bolero-sc+lambda=100");
     assert_eq!(Variant::parse_list(&[]).unwrap(), Variant::all());
@@ -35,7 +35,8 @@ fn missing_recordings_are_named() {
     assert!(message(&error).contains("`127_07`"));
     fs::write(folder.path().join("127_07.csv"), "a,b\n1,2\n").unwrap();
     assert!(matches!(Motion::read(folder.path(), "127_07"), Err(ReproError::Read(_))));
-    assert!(matches!(bolero_trials(folder.path()), Err(ReproError::Io { .. })));
+    assert!(matches!(Evaluation::of_paper(folder.path()), Err(ReproError::Io { .. })));
+    assert!(matches!(Motion::read_aside(folder.path()), Err(ReproError::Motion { .. })));
 }
 
 fn list(text: &str) -> Result<Vec<Trial>, ReproError> {
@@ -77,7 +78,7 @@ fn refused_before_work(matrix: &Matrix) -> String {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("cells.jsonl");
     let mut store = Store::open(&path).unwrap();
-    let error = run(matrix, &mut store, 1, &|_| ()).unwrap_err();
+    let error = run(std::slice::from_ref(matrix), &mut store, 1, &|_| ()).unwrap_err();
     assert_eq!(path.metadata().unwrap().len(), 0);
     message(&error)
 }
@@ -94,6 +95,10 @@ fn a_trial_that_does_not_fit_stops_the_run_before_it_starts() {
     assert!(with(&|trial| trial.hidden[0].end = 100_000).contains("outside"));
     assert!(with(&|trial| trial.motion = "swim".to_owned()).contains("swim"));
     assert!(with(&|trial| trial.hidden.clear()).contains("hides nothing"));
+    // The hard bones' first iterations are those of the plain system.
+    let hard = vec![Variant::parse("bolero-hc").unwrap()];
+    let one = Matrix { variants: hard, iterations: Some(1), ..matrix.clone() };
+    assert!(refused_before_work(&one).contains("iterations"));
     let empty = Matrix { variants: Vec::new(), ..matrix.clone() };
     assert!(refused_before_work(&empty).contains("0 methods"));
     let nowhere = Matrix { motions: BTreeMap::new(), ..matrix };
@@ -143,26 +148,4 @@ fn the_program_runs_a_small_matrix() {
         assert!(out.join(format!("{task}.html")).is_file());
     }
     assert!(fixtures().is_dir());
-}
-
-#[test]
-fn the_papers_trials_are_the_cases_the_list_and_the_part_with_reference_figures() {
-    let folder = tempfile::tempdir().unwrap();
-    let data = folder.path().join("cmu/bolero-nine");
-    fs::create_dir_all(&data).unwrap();
-    let mut text = "trial,motion,marker,start,end\n".to_owned();
-    for trial in 1..=7 {
-        let motion = if trial == 4 { "132_46" } else { "127_07" };
-        text += &[&trial.to_string(), ",", motion, ",T10,5,9\n"].concat();
-    }
-    fs::write(data.join("trials90.csv"), text).unwrap();
-    let trials = bolero_trials(folder.path()).unwrap();
-    let names = |set: &str| -> Vec<&str> {
-        trials.iter().filter(|t| t.set == set).map(|t| t.name.as_str()).collect()
-    };
-    assert_eq!(names("cases").len(), 4);
-    assert_eq!(names("trials90"), ["1", "2", "3", "4", "5", "6", "7"]);
-    assert_eq!(names("trials35"), ["1", "2", "3", "5", "6"]);
-    let knee = &trials[0].hidden[0];
-    assert_eq!((knee.marker.as_str(), knee.start, knee.end), ("RKNE", 24, 90));
 }

@@ -2,6 +2,8 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::float_cmp)] // tests fail by panicking, and compare exactly
 
 mod errors;
+mod evaluation;
+mod protocols;
 mod resume;
 mod tables;
 
@@ -32,7 +34,7 @@ pub(crate) fn small_matrix() -> Matrix {
 
 pub(crate) fn run_in<'a>(matrix: &'a Matrix, folder: &Path, threads: usize) -> Vec<Finished<'a>> {
     let mut store = Store::open(&folder.join("cells.jsonl")).unwrap();
-    run(matrix, &mut store, threads, &|_| ()).unwrap()
+    run(std::slice::from_ref(matrix), &mut store, threads, &|_| ()).unwrap()
 }
 
 pub(crate) fn same_results(a: &[Finished<'_>], b: &[Finished<'_>]) -> bool {

@@ -39,7 +39,7 @@ fn a_killed_run_goes_on_where_it_was() {
     let count = |_| {
         computed.fetch_add(1, Ordering::Relaxed);
     };
-    let again = run(&matrix, &mut store, 2, &count).unwrap();
+    let again = run(std::slice::from_ref(&matrix), &mut store, 2, &count).unwrap();
     assert_eq!(computed.into_inner(), cells.len() - kept);
     assert!(same_results(&whole, &again));
     // Reused cells keep even their time.
@@ -50,7 +50,7 @@ fn a_killed_run_goes_on_where_it_was() {
     let count = |_| {
         idle.fetch_add(1, Ordering::Relaxed);
     };
-    assert_eq!(run(&matrix, &mut store, 2, &count).unwrap(), again);
+    assert_eq!(run(std::slice::from_ref(&matrix), &mut store, 2, &count).unwrap(), again);
     assert_eq!(idle.into_inner(), 0, "a finished matrix computes nothing");
 }
 
@@ -76,4 +76,49 @@ fn a_cell_is_reused_only_for_the_same_question() {
     run_in(&more, folder.path(), 1);
     // Only the rows that iterate are asked anew by the number of iterations; a key holds it for all.
     assert!(lines(folder.path()).len() > before);
+}
+
+/// The program itself, killed in the middle: what was finished is kept, and the results are those of a
+/// run that nothing disturbed.
+#[test]
+fn a_killed_program_goes_on_where_it_was() {
+    use std::process::{Command, Stdio};
+    let start = |out: &std::path::Path| {
+        let arguments =
+            ["leaderboard", "--quick", "--json", "--threads", "1", "--protocol", "multi"];
+        let mut program = Command::new(env!("CARGO_BIN_EXE_mocap-repro"));
+        program.args(arguments).args([
+            "--methods",
+            "linear,dynammo,ridge",
+            "--iterations",
+            "3",
+            "--out",
+        ]);
+        program.arg(out).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let (killed, whole) = (folder.path().join("killed"), folder.path().join("whole"));
+    let cells = |out: &std::path::Path| -> usize {
+        fs::read_to_string(out.join("cells.jsonl")).map_or(0, |text| text.lines().count())
+    };
+    let mut first = start(&killed);
+    while cells(&killed) < 5 && first.try_wait().unwrap().is_none() {
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    first.kill().unwrap();
+    first.wait().unwrap();
+    let kept = lines(&killed);
+    assert!(start(&killed).wait().unwrap().success());
+    assert!(start(&whole).wait().unwrap().success());
+    assert_eq!(cells(&killed), cells(&whole), "no cell is computed twice");
+    // The last line that was found may have been cut off.
+    let sure = kept.len().saturating_sub(1);
+    assert_eq!(lines(&killed)[..sure], kept[..sure], "finished cells keep even their time");
+    let untimed = |out: &std::path::Path| {
+        // All columns but the last, which is the time.
+        let text = fs::read_to_string(out.join("leaderboard.csv")).unwrap();
+        let rows = text.lines().map(|row| row.rsplit_once(',').unwrap().0.to_owned());
+        rows.collect::<Vec<_>>()
+    };
+    assert_eq!(untimed(&killed), untimed(&whole));
 }

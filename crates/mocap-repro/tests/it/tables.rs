@@ -1,10 +1,7 @@
 use mocap_repro::{
-    Coordinates, Entry, Finished, Knowledge, Outcome, Reference, Stats, Table, Trial, Variant,
-    bolero_report, compare, duels, fixture_trials, leaderboard_report, leaderboard_trials,
-    summarise,
+    Coordinates, Finished, Knowledge, LengthOutcome, Outcome, Reference, Stats, Sureness, Trial,
+    Variant, compare, duels, fixture_trials, leaderboard_report, summarise,
 };
-
-use crate::{run_in, small_matrix};
 
 fn outcome(mse_m2: f64, mean_mm: f64) -> Outcome {
     Outcome {
@@ -12,13 +9,11 @@ fn outcome(mse_m2: f64, mean_mm: f64) -> Outcome {
         mean_mm: Some(mean_mm),
         median_mm: Some(mean_mm),
         p95_mm: Some(2.0 * mean_mm),
-        bone_mm: None,
         hidden: 10,
-        unfilled: 0,
         iterations: 1,
         termination: "converged".to_owned(),
         seconds: 0.5,
-        error: None,
+        ..Outcome::default()
     }
 }
 
@@ -108,84 +103,8 @@ fn every_built_in_reference_is_readable() {
     assert_eq!(references.len(), lines);
     assert!(references.iter().all(|reference| reference.value > 0.0));
     // A single-trial case has one figure, by whatever statistic it is called.
-    let figures = ["mse_mean", "mse_median", "mm_mean", "mm_median"];
+    let figures = ["mse_mean", "mse_median", "mse_min", "mse_max", "mm_mean", "mm_median"];
     assert!(references.iter().all(|reference| figures.contains(&reference.figure.as_str())));
-}
-
-#[test]
-fn tables_say_the_same_in_every_form() {
-    let table = Table {
-        id: "t",
-        title: "A < B".to_owned(),
-        note: String::new(),
-        columns: vec!["the name".to_owned(), "x".to_owned()],
-        rows: vec![
-            vec![Entry::Text("a|b, c".to_owned()), Entry::Scientific(Some(0.001_234_5))],
-            vec![Entry::Text("d".to_owned()), Entry::Fixed(None, 1)],
-        ],
-    };
-    assert_eq!(
-        table.to_markdown(),
-        "## A < B\n\n| the name | x |\n| --- | ---: |\n| a\\|b, c | 1.23e-3 |\n| d | \u{2013} |\n"
-    );
-    assert_eq!(table.to_csv(), "the_name,x\n\"a|b, c\",0.0012345\nd,\n");
-    assert!(table.to_html().contains("<h2>A &lt; B</h2>"));
-}
-
-#[test]
-fn a_report_writes_tables_figures_and_one_page() {
-    let matrix = small_matrix();
-    let folder = tempfile::tempdir().unwrap();
-    let cells = run_in(&matrix, folder.path(), 2);
-    // 8 trials, 3 methods, 2 coordinates, 2 kinds of knowledge.
-    assert_eq!(cells.len(), 96);
-    let report = bolero_report(&cells);
-    let [markdown, page] = report.write(folder.path(), "bolero").unwrap();
-    assert!(std::fs::read_to_string(markdown).unwrap().contains("| dynammo |"));
-    let page = std::fs::read_to_string(page).unwrap();
-    assert!(page.contains("<svg") && !page.contains("src=") && !page.contains("href="));
-    for file in ["trials.csv", "motions.csv", "mse-by-motion-body-oracle.png"] {
-        assert!(folder.path().join(file).metadata().unwrap().len() > 0, "{file}");
-    }
-    // In world coordinates a method without bones is told nothing by an oracle.
-    let of = |knowledge| {
-        let is_it = |cell: &&Finished<'_>| {
-            cell.variant.label() == "dynammo"
-                && cell.coordinates == Coordinates::World
-                && cell.knowledge == knowledge
-        };
-        cells.iter().filter(is_it).map(|cell| &cell.outcome).collect::<Vec<_>>()
-    };
-    assert_eq!(of(Knowledge::Oracle), of(Knowledge::Visible));
-    assert!(cells.iter().all(|cell| cell.outcome.error.is_none() && cell.outcome.unfilled == 0));
-}
-
-#[test]
-fn protocols_draw_the_same_gaps_every_time_and_fit_their_motions() {
-    use mocap_repro::Protocol;
-    let matrix = small_matrix();
-    let none = std::path::Path::new("");
-    for protocol in [Protocol::Multi, Protocol::Limb, Protocol::Blackout] {
-        let trials = leaderboard_trials(protocol, none, &matrix.motions).unwrap();
-        assert_eq!(trials, leaderboard_trials(protocol, none, &matrix.motions).unwrap());
-        assert!(!trials.is_empty());
-        for trial in &trials {
-            let take = matrix.motions[&trial.motion].take();
-            let holdout = trial.cut(take).unwrap();
-            assert!(holdout.hidden().iter().all(|(t, _)| (10..take.frames() - 10).contains(&t)));
-        }
-        let same = mocap_repro::Matrix { trials, iterations: Some(1), ..matrix.clone() };
-        same.check().unwrap();
-        // So many different markers as the class says.
-        let five = same.trials.iter().find(|trial| trial.class.starts_with("5 markers"));
-        let markers = |trial: &Trial| {
-            let mut names: Vec<String> = trial.hidden.iter().map(|h| h.marker.clone()).collect();
-            names.sort();
-            names.dedup();
-            names.len()
-        };
-        assert!(five.is_none_or(|trial| markers(trial) == 5));
-    }
 }
 
 #[test]
@@ -198,4 +117,42 @@ fn a_leaderboard_has_a_row_for_each_gap() {
     assert!(text.contains("| fixtures | synthetic | 2.0 | 1.5 |"), "{text}");
     assert_eq!(report.rows.len(), 2);
     assert_eq!((report.rows[1].stats.failed, report.rows[1].stats.unfilled), (1, 10));
+}
+
+/// One class of gap lengths: ten samples, so many of them within one and two sigma.
+fn class(class: usize, mean_mm: f64, within: [usize; 2]) -> LengthOutcome {
+    let mut counts = [0; 12];
+    (counts[3], counts[7]) = (within[0], within[1]);
+    let sureness = Sureness { samples: 10, within: counts, ..Sureness::default() };
+    let mean_mm = Some(mean_mm);
+    LengthOutcome {
+        class,
+        mean_mm,
+        median_mm: mean_mm,
+        p95_mm: mean_mm,
+        hidden: 10,
+        sureness,
+        ..Default::default()
+    }
+}
+
+#[test]
+fn mixed_gaps_are_told_apart_by_length_and_sigmas_add_up() {
+    let trials =
+        fixture_trials().into_iter().map(|trial| Trial { set: "realistic".to_owned(), ..trial });
+    let trials: Vec<Trial> = trials.collect();
+    let variants = ["linear", "ridge"].map(|text| Variant::parse(text).unwrap());
+    let mut cells = cells(&trials, &variants, [[1.0; 3], [2.0; 3]]);
+    for cell in cells.iter_mut().filter(|cell| cell.variant.label() == "ridge") {
+        cell.outcome.by_length = vec![class(0, 1.0, [6, 9]), class(2, 8.0, [8, 10])];
+    }
+    let report = leaderboard_report(&cells);
+    let row = |class: &str| report.rows.iter().find(|row| row.class == class).unwrap();
+    assert_eq!(row("gaps up to 0.1 s").stats.mm_mean, Some(1.0));
+    assert_eq!(row("gaps of 0.25–0.5 s").stats.mm_median, Some(8.0));
+    let text = report.to_markdown();
+    // 42 of 60 and 57 of 60 samples over three trials of two classes.
+    assert!(text.contains("| ridge | all | all | 60 | 70.0 | 95.0 |"), "{text}");
+    assert!(text.contains("| ridge | all | gaps up to 0.1 s | 30 | 60.0 | 90.0 |"), "{text}");
+    assert!(!text.contains("| linear | all |"), "a method without sigma has no calibration");
 }
