@@ -12,6 +12,7 @@ use crate::{
 mod findings;
 mod paper_figures;
 mod report;
+mod sweep_figures;
 mod sweeps;
 mod table_one;
 mod trial_figures;

@@ -59,7 +59,7 @@ fn shares_by_hand() {
 #[test]
 fn a_normal_law_is_honest() {
     // 4000 errors along one axis with the stated deviation: a standard error of 0.7 %.
-    let truth = take(&[along_x(&[0.0; 4002])]);
+    let truth = take(&[along_x(&vec![0.0; 4002])]);
     let hidden = Mask::from_fn(4002, 1, |t, _| t > 0 && t < 4001);
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(5);
     // Twelve uniform numbers less their mean are normal to well below that.

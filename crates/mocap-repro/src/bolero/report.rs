@@ -3,7 +3,8 @@
 use mocap_report::Entry;
 
 use super::{
-    Evaluation, Legend, findings::findings, paper_figures, set, sweeps, table_one, trial_figures,
+    Evaluation, Legend, findings::findings, paper_figures, set, sweep_figures, sweeps, table_one,
+    trial_figures,
 };
 use crate::{
     Duel, Finished, Reference, Report, ReproError, Row, Section, Variant, compare, duels,
@@ -53,7 +54,7 @@ pub fn bolero_report(
     sections.push(failure_table(cells));
     let mut figures = paper_figures::figures(evaluation, variants, iterations)?;
     figures.extend(trial_figures::figures(cells, &legend));
-    figures.extend(sweeps::figures(cells, &legend));
+    figures.extend(sweep_figures::figures(cells, &legend));
     Ok(Report {
         title: "Bone-length constrained gap filling: the paper's evaluation, ours beside theirs"
             .to_owned(),
