@@ -7,13 +7,15 @@ use std::{
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use gapfill::{Bones, Borders, Coordinates, Edges, Options};
-use mocap_core::{BoneSet, Filled, Refusal, Take};
+use marker_faults::FaultDetector;
+use mocap_core::{BoneSet, Filled, Mask, Refusal, Take};
 use mocap_io::{Edit, Format, MarkerFile, encode_markers, read_bones};
 use mocap_report::{FillSummary, PlotInput, TakeSummary, html_page, render_png, render_svg};
 use serde_json::json;
 use sha2::{Digest, Sha256};
 
 use crate::{
+    detect,
     files::{OutputArgs, ReadArgs, create_folder},
     marker_sets::MarkerSetArgs,
     progress::Progress,
@@ -40,6 +42,12 @@ pub(crate) struct Fill {
     output: OutputArgs,
     #[command(flatten)]
     method: MethodArgs,
+    /// List samples that no body can have made, as `mocap detect` does, before filling
+    #[arg(long)]
+    detect: bool,
+    /// Fill those samples, too, as if they were missing
+    #[arg(long, requires = "detect")]
+    apply: bool,
     /// Leave gaps open that last longer
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     max_gap: Option<f64>,
@@ -122,15 +130,21 @@ impl Fill {
             rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
         }
         let file = self.read.read(&self.input)?;
-        let options = self.method.options(file.take())?;
-        let run = fill(file.take(), &self.method.method, &options, self.json)?;
+        let faults = self.detect.then(|| Faulty::of(&file, &self.input, self.apply)).transpose()?;
+        let input = faults.as_ref().map_or(file.take(), |faults| &faults.left);
+        let options = self.method.options(input)?;
+        let run = fill(input, &self.method.method, &options, self.json)?;
         let filled = self.keep_short(run.filled)?;
         let bytes = self.bytes(&file, &filled)?;
         self.output.write(&bytes)?;
 
         let first_frame = file.info().first_frame;
         let summary = FillSummary::new(&filled, first_frame, run.seconds);
-        let sidecar = self.sidecar(&file, &bytes, &summary)?;
+        let mut sidecar = self.sidecar(&file, &bytes, &summary)?;
+        let detected = faults.as_ref().map(|faults| faults.report.to_json(self.apply));
+        if let Some(detected) = &detected {
+            sidecar["detected"] = detected.clone();
+        }
         self.output.write_beside(SIDECAR, &serde_json::to_vec_pretty(&sidecar)?)?;
         if let Some(folder) = &self.report {
             let bones = options.bones.resolve(file.take())?;
@@ -139,8 +153,15 @@ impl Fill {
             report(folder, &title, &take, &filled, &bones, &summary)?;
         }
         if self.json {
-            say!("{}", serde_json::to_string(&summary)?);
+            let mut object = serde_json::to_value(&summary)?;
+            if let Some(detected) = detected {
+                object["detected"] = detected;
+            }
+            say!("{object}");
         } else {
+            if let Some(faults) = &faults {
+                faults.report.print();
+            }
             say!("{}", summary.to_text());
             say!("wrote {}", self.output.output.display());
         }
@@ -187,7 +208,16 @@ impl Fill {
             Some(format) if format != info.format => {
                 Ok(encode_markers(filled.take(), format, info.unit, info.first_frame)?)
             }
-            _ => Ok(file.patched(&Edit::fills(filled))?),
+            _ => {
+                // What was hidden and could not be filled is missing in the output.
+                let (before, after) = (file.take(), filled.take());
+                let lost = Mask::from_fn(before.frames(), before.marker_count(), |t, m| {
+                    before.is_observed(t, m) && !after.is_observed(t, m)
+                });
+                let mut edits = Edit::fills(filled);
+                edits.extend(Edit::hides(before, &lost));
+                Ok(file.patched(&edits)?)
+            }
         }
     }
 
@@ -263,6 +293,21 @@ impl MethodArgs {
                 BordersArg::Keep => Borders::Keep,
             }),
         })
+    }
+}
+
+/// What `--detect` found, and what is left to fill from.
+struct Faulty {
+    report: detect::Report,
+    left: Take,
+}
+
+impl Faulty {
+    fn of(file: &MarkerFile, path: &Path, apply: bool) -> Result<Self> {
+        let faults = FaultDetector::default().detect(file.take());
+        let report = detect::Report::new(file, path, &faults);
+        let left = if apply { faults.hide(file.take())? } else { file.take().clone() };
+        Ok(Self { report, left })
     }
 }
 

@@ -4,6 +4,7 @@
 mod bones;
 mod convert;
 mod demo;
+mod detect;
 mod files;
 mod fill;
 mod inspect;
@@ -27,6 +28,7 @@ use clap::{Parser, Subcommand};
     version,
     after_help = "Start with `mocap demo -o demo`, or with a recording of your own:
   mocap inspect walk.c3d              what is in it, and where its gaps are
+  mocap detect walk.c3d               list samples that no body can have made
   mocap fill walk.c3d -o filled.c3d   fill the gaps; nothing else in the file changes
   mocap plot walk.c3d filled.c3d -o fill.svg
 
@@ -41,6 +43,7 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Inspect(inspect::Inspect),
+    Detect(detect::Detect),
     Fill(fill::Fill),
     Plot(plot::Plot),
     Convert(convert::Convert),
@@ -55,6 +58,7 @@ enum Command {
 fn main() -> ExitCode {
     let run = match Cli::parse().command {
         Command::Inspect(command) => command.run(),
+        Command::Detect(command) => command.run(),
         Command::Fill(command) => command.run(),
         Command::Plot(command) => command.run(),
         Command::Convert(command) => command.run(),

@@ -11,9 +11,11 @@ mod axes;
 mod cell;
 mod curve;
 mod page;
+mod spots;
 mod timeline;
 
 use page::Page;
+pub use spots::{MAX_SPOTS, Spot, plot_spots};
 
 /// Markers whose trajectories one figure can hold.
 pub const MAX_FIGURE_MARKERS: usize = 12;

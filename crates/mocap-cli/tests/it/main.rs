@@ -3,6 +3,7 @@
 
 mod bytes;
 mod contract;
+mod detect;
 mod real;
 mod safety;
 

@@ -6,7 +6,7 @@ use super::{PlotInput, cell::shorten};
 use crate::draw::Point;
 
 /// Millimetres in a metre.
-const MM_PER_M: f64 = 1000.0;
+pub(super) const MM_PER_M: f64 = 1000.0;
 
 /// One quantity over time, and where it was measured.
 #[derive(Debug, Clone)]

@@ -12,15 +12,15 @@ use crate::{
     summary::counted,
 };
 
-const WIDTH: f64 = 1200.0;
-const MARGIN: f64 = 28.0;
-const COLUMNS: usize = 3;
-const CELL_HEIGHT: f64 = 172.0;
+pub(super) const WIDTH: f64 = 1200.0;
+pub(super) const MARGIN: f64 = 28.0;
+pub(super) const COLUMNS: usize = 3;
+pub(super) const CELL_HEIGHT: f64 = 172.0;
 /// Title, subtitle and legend.
-const HEADER_HEIGHT: f64 = 98.0;
+pub(super) const HEADER_HEIGHT: f64 = 98.0;
 const HEADING_HEIGHT: f64 = 30.0;
 /// Room below the last row of charts, for the name of their time axis.
-const FOOT_HEIGHT: f64 = 26.0;
+pub(super) const FOOT_HEIGHT: f64 = 26.0;
 /// Markers drawn when none are asked for.
 const DEFAULT_MARKERS: usize = 3;
 /// Bones that fit on a page.
@@ -132,7 +132,7 @@ impl Drawing for Page<'_> {
         for (letter, grid) in [("B", &self.trajectories), ("C", &self.bones)] {
             heading(canvas, letter, &grid.heading, top)?;
             top += HEADING_HEIGHT;
-            draw_grid(canvas, grid, top, self.input.take.rate_hz())?;
+            draw_grid(canvas, &grid.curves, top, self.input.take.rate_hz())?;
             top += grid.height();
         }
         Ok(())
@@ -170,19 +170,20 @@ fn heading<DB: Backend>(
     canvas.text(text, (MARGIN + 22.0, top + 20.0), 14.0, Align::Left, colour::INK)
 }
 
-fn draw_grid<DB: Backend>(
+/// Small charts row by row, the lowest ones with a name for their time axis.
+pub(super) fn draw_grid<DB: Backend>(
     canvas: &mut Canvas<'_, DB>,
-    grid: &Grid,
+    curves: &[Curve],
     top: f64,
     rate_hz: f64,
 ) -> Result<(), ReportError> {
     let width = (WIDTH - 2.0 * MARGIN) / COLUMNS as f64;
-    for (i, curve) in grid.curves.iter().enumerate() {
+    for (i, curve) in curves.iter().enumerate() {
         let (row, column) = (i / COLUMNS, i % COLUMNS);
         let left = MARGIN + column as f64 * width;
         let frame = Frame { left, top: top + row as f64 * CELL_HEIGHT, width, height: CELL_HEIGHT };
         Cell::new(curve, frame, rate_hz).draw(canvas)?;
-        let is_lowest = i + COLUMNS >= grid.curves.len();
+        let is_lowest = i + COLUMNS >= curves.len();
         if is_lowest {
             let at = (left + 52.0 + 0.5 * (width - 64.0), frame.top + CELL_HEIGHT + 10.0);
             canvas.text("time (s)", at, 11.5, Align::Centre, colour::INK)?;
