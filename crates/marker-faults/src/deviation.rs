@@ -49,6 +49,27 @@ impl Deviations {
     }
 }
 
+/// The deviation of any sample from the cubic through the two trusted samples on either side of it.
+pub(crate) fn from_either_side(
+    take: &Take,
+    marker: usize,
+    t: usize,
+    trusted: &[usize],
+    allowance: f64,
+) -> Option<[f64; 3]> {
+    let after = trusted.partition_point(|&s| s <= t);
+    let before = trusted.partition_point(|&s| s < t);
+    let base = [
+        *trusted.get(before.checked_sub(2)?)?,
+        *trusted.get(before - 1)?,
+        *trusted.get(after)?,
+        *trusted.get(after + 1)?,
+    ];
+    let reach = reach_frames(take.rate_hz());
+    let near = base.iter().all(|&s| s.abs_diff(t) <= reach);
+    near.then(|| deviation(take, marker, t, &base, allowance)).flatten()
+}
+
 /// Frames that samples may lie apart: three at least, so that slow recordings are looked at, too.
 pub(crate) fn reach_frames(rate_hz: f64) -> usize {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a small positive number

@@ -3,7 +3,7 @@
 use crate::{
     Fault, FaultKind,
     detector::Scene,
-    deviation::{Deviations, part_local},
+    deviation::{Deviations, from_either_side, part_local},
 };
 use mocap_core::geometry::norm;
 
@@ -34,9 +34,26 @@ pub(crate) fn find(scene: &Scene<'_>) -> Vec<Fault> {
             spikes.extend(worst);
         }
         spikes.sort_by_key(|(t, _)| *t);
+        spikes.retain(|&(t, _)| !acquitted(scene, marker, t, &mut trusted));
         found.extend(merge(scene, marker, &spikes));
     }
     found
+}
+
+/// Takes a sample back that lies where the trusted samples around it lead: between two spikes a good sample looks worst
+/// of the three.
+fn acquitted(scene: &Scene<'_>, marker: usize, t: usize, trusted: &mut Vec<usize>) -> bool {
+    let allowance = scene.params.allowance(scene.take.rate_hz());
+    let own = from_either_side(scene.take, marker, t, trusted, allowance);
+    let is_good = own.is_some_and(|own| {
+        let theirs = |m: usize| scene.deviations[m].within[t];
+        let size = norm(part_local(own, &scene.neighbours[marker], theirs));
+        size <= scene.limit_m(scene.params.size_m)
+    });
+    if is_good {
+        trusted.insert(trusted.partition_point(|&s| s < t), t);
+    }
+    is_good
 }
 
 fn worst_of_clusters(scene: &Scene<'_>, marker: usize, own: &Deviations) -> Vec<(usize, f64)> {

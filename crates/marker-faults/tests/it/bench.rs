@@ -119,7 +119,7 @@ impl Scenario {
             Self::Stays(first, last) => {
                 let mut dice = Dice(ChaCha8Rng::seed_from_u64(seed));
                 let mut offsets = vec![vec![[0.0; 3]; take.marker_count()]; take.frames()];
-                for _ in 0..take.frames() / 30 + 1 {
+                for _ in 0..=take.frames() / 30 {
                     let (marker, length) =
                         (dice.below(take.marker_count()), first + dice.below(last - first + 1));
                     let start = 8 + dice.below(take.frames() - length - 16);
@@ -245,9 +245,13 @@ impl Score {
 
 impl fmt::Display for Score {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { altered, found, alarms, new_alarms, .. } = *self;
-        let gross = found as f64 / (found + alarms) as f64;
-        let (large, net) = (self.recall(), self.precision());
-        write!(f, "{altered} | {large:.3} | {net:.3} | {gross:.3} | {new_alarms} | {alarms}")
+        let Self { altered, large, found, found_large, alarms, new_alarms } = *self;
+        let share = |part: usize, whole: usize| match (altered, part as f64 / whole as f64) {
+            (0, _) => "–".to_owned(),
+            (_, share) => format!("{share:.3}"),
+        };
+        let recall = share(found_large, large);
+        let (net, gross) = (share(found, found + new_alarms), share(found, found + alarms));
+        write!(f, "{altered} | {recall} | {net} | {gross} | {new_alarms} | {alarms}")
     }
 }
