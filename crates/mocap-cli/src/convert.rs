@@ -1,14 +1,17 @@
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use clap::Args;
-use mocap_io::{Format, MotionFile, encode_markers, encode_motion};
+use mocap_core::Motion;
+use mocap_io::{Format, LengthUnit, MotionFile, encode_markers, encode_motion};
 
 use crate::files::{OutputArgs, ReadArgs};
 
 /// Write a recording in another format; the same format gives identical bytes
 ///
-/// Markers go between C3D, TRC, CSV and TSV; skeleton motion between BVH and ASF/AMC. Units and axes are kept.
+/// Markers go between C3D, TRC, CSV and TSV; skeleton motion between BVH and ASF/AMC. Units and axes are kept, but for
+/// ASF/AMC, which is written in inches times 0.45 as in CMU's database. With an AMC file its skeleton is written
+/// beside it, under the same name with .asf.
 #[derive(Debug, Args)]
 pub(crate) struct Convert {
     /// File to read
@@ -28,7 +31,9 @@ pub(crate) struct Convert {
 impl Convert {
     pub(crate) fn run(self) -> Result<()> {
         let output = OutputArgs::new(self.output, self.force);
-        output.check(&[&self.input])?;
+        let inputs: Vec<&Path> =
+            [Some(&self.input), self.asf.as_ref()].into_iter().flatten().map(PathBuf::as_path).collect();
+        output.check(&inputs)?;
         let to = Format::of(&output.output)
             .with_context(|| format!("{}: unknown extension", output.output.display()))?;
         let from = Format::of(&self.input);
@@ -45,9 +50,24 @@ impl Convert {
             if from == Some(to) {
                 file.bytes().to_vec()
             } else {
+                if to == Format::Amc {
+                    skeleton_beside(&output, &inputs, file.motion())?;
+                }
                 encode_motion(file.motion(), to, file.info().unit)?
             }
         };
         output.write(&bytes)
     }
+}
+
+/// Writes the ASF file that goes with an AMC file.
+pub(crate) fn skeleton_beside(
+    output: &OutputArgs,
+    inputs: &[&Path],
+    motion: &Motion,
+) -> Result<PathBuf> {
+    let asf = output.with_extension(Format::Asf.extension());
+    asf.check(inputs)?;
+    asf.write(&encode_motion(motion, Format::Asf, LengthUnit::Inch)?)?;
+    Ok(asf.output)
 }

@@ -66,6 +66,11 @@ impl OutputArgs {
         Self { output, force }
     }
 
+    /// An output of the same name with another extension.
+    pub(crate) fn with_extension(&self, extension: &str) -> Self {
+        Self { output: self.output.with_extension(extension), force: self.force }
+    }
+
     /// Refuses an output that is one of the inputs, or that exists when it may not be replaced, before any work is done.
     pub(crate) fn check(&self, inputs: &[&Path]) -> Result<()> {
         for input in inputs {

@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use crate::{CoreError, Rotation, geometry::add};
+use crate::{CoreError, Rotation};
 
 /// A joint of a skeleton.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,23 +54,12 @@ impl Skeleton {
 
     /// Forward kinematics: the joints' positions in metres, `(joints, 3)`.
     ///
+    /// See [`frames`](Self::frames) for their rotations too.
+    ///
     /// # Errors
     /// [`CoreError::PoseLength`].
     pub fn positions(&self, pose: &Pose) -> Result<Vec<[f64; 3]>, CoreError> {
-        if pose.rotations.len() != self.joints.len() {
-            let (expected, found) = (self.joints.len(), pose.rotations.len());
-            return Err(CoreError::PoseLength { expected, found });
-        }
-        let mut placed: Vec<([f64; 3], Rotation)> = Vec::with_capacity(self.joints.len());
-        for (joint, &rotation) in self.joints.iter().zip(&pose.rotations) {
-            placed.push(match joint.parent.map(|p| placed[p]) {
-                None => (add(pose.root_m, joint.offset_m), rotation),
-                Some((origin, turn)) => {
-                    (add(origin, turn.apply(joint.offset_m)), turn.after(rotation))
-                }
-            });
-        }
-        Ok(placed.into_iter().map(|(origin, _)| origin).collect())
+        Ok(self.frames(pose)?.origins_m)
     }
 }
 
@@ -81,6 +70,14 @@ pub struct Pose {
     pub root_m: [f64; 3],
     /// Rotation of each joint relative to its parent, `(joints,)`.
     pub rotations: Vec<Rotation>,
+}
+
+impl Pose {
+    /// The rest pose of a skeleton, with its root at its own offset.
+    #[must_use]
+    pub fn rest(skeleton: &Skeleton) -> Self {
+        Self { root_m: [0.0; 3], rotations: vec![Rotation::IDENTITY; skeleton.joints().len()] }
+    }
 }
 
 /// A skeleton and its poses over time.

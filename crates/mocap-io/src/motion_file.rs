@@ -9,7 +9,11 @@ use crate::{
     FileInfo, Format, LengthUnit, ParseError, ReadError, ReadOptions, WriteError,
     marker_file::read_bytes,
     recording::ASSUMED_RATE_HZ,
-    text::{amc::Amc, asf::Asf, bvh, bvh::Bvh},
+    text::{
+        amc::{self, Amc},
+        asf::{self, Asf},
+        bvh::{self, Bvh},
+    },
 };
 
 /// A skeleton file: BVH, AMC with its ASF, or an ASF alone, which is a skeleton without frames.
@@ -98,8 +102,22 @@ impl MotionFile {
 
 /// A new skeleton file of a motion.
 ///
+/// An AMC file means something only beside the ASF file of the same motion. Both are written in the units of
+/// CMU's database, whatever `unit` says; BVH is written in `unit`.
+///
 /// # Errors
-/// [`WriteError::Conversion`] for every format but BVH.
+/// [`WriteError::Conversion`] for formats of markers, and for AMC without a frame, which nothing could read.
+///
+/// ```
+/// use mocap_core::{Joint, Motion, Pose, Skeleton};
+/// use mocap_io::{Format, LengthUnit, encode_motion};
+/// let skeleton = Skeleton::new(vec![Joint { name: "hips".into(), parent: None, offset_m: [0.0; 3] }])?;
+/// let pose = Pose::rest(&skeleton);
+/// let motion = Motion::new(skeleton, 120.0, vec![pose])?;
+/// let bytes = encode_motion(&motion, Format::Amc, LengthUnit::Inch)?;
+/// assert!(String::from_utf8(bytes)?.ends_with("1\nroot 0.000000000 0.000000000 0.000000000 0.000000 0.000000 0.000000\n"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn encode_motion(
     motion: &Motion,
     format: Format,
@@ -107,9 +125,12 @@ pub fn encode_motion(
 ) -> Result<Vec<u8>, WriteError> {
     match format {
         Format::Bvh => Ok(bvh::encode(motion, unit)),
-        to @ (Format::Asf | Format::Amc) => {
-            Err(WriteError::Conversion { to, rule: "joint motion is written as BVH" })
+        Format::Asf => Ok(asf::encode(motion.skeleton())),
+        to @ Format::Amc if motion.poses().is_empty() => {
+            let rule = "the input has no frame; write its skeleton as .asf";
+            Err(WriteError::Conversion { to, rule })
         }
+        Format::Amc => Ok(amc::encode(motion)),
         to => Err(WriteError::Conversion { to, rule: "joint motion holds no markers" }),
     }
 }

@@ -3,7 +3,9 @@
 
 mod body_frame;
 mod bones;
+mod kinematics;
 mod knowledge;
+mod rotations;
 mod skeleton;
 mod takes;
 

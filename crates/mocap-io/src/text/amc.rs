@@ -19,6 +19,10 @@ use super::{
 };
 use crate::{FileInfo, Format, ReadOptions};
 
+mod encode;
+
+pub use encode::encode;
+
 /// An AMC file.
 #[derive(Debug, Clone)]
 pub struct Amc {

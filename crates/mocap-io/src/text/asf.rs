@@ -22,7 +22,11 @@ use super::{
 };
 use crate::{FileInfo, Format, LengthUnit, ReadOptions};
 
+mod encode;
 mod reader;
+
+pub use encode::encode;
+pub(super) use encode::{bones, units_per_metre};
 
 /// A degree of freedom of a bone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -8,12 +8,12 @@ use std::{
 
 use mocap_core::geometry::{distance, sub};
 use mocap_io::{
-    Edit, Format, MissingMarks, ReadOptions, Sample,
+    Edit, Format, LengthUnit, MissingMarks, ReadOptions, Sample,
     text::{
         EncodeOptions, Parsed, TextError,
-        amc::Amc,
-        asf::Asf,
-        bvh::Bvh,
+        amc::{self, Amc},
+        asf::{self, Asf},
+        bvh::{self, Bvh},
         table::{encode_csv, encode_tsv, read_csv, read_tsv},
         trc,
     },
@@ -270,4 +270,36 @@ fn acclaim_and_bvh_of_one_trial_agree() {
     );
     // The BVH has four decimals of a degree and five of a length: 1e-4° over 1.5 m are 0.003 mm a joint.
     assert!(worst.0 < 5e-5, "{worst:?}");
+}
+
+#[test]
+fn acclaim_to_bvh_and_back_keeps_every_joint() {
+    let Some(folder) = data("cmu/paired") else { return };
+    let options = ReadOptions::default();
+    for (skeleton_name, trial) in [("02", "02_01"), ("05", "05_13"), ("135", "135_07")] {
+        let asf = skeleton(&folder.join(format!("{skeleton_name}.asf")));
+        let amc = bytes(&folder.join(format!("{trial}.amc")));
+        let amc = Amc::parse(amc, &asf, &options).unwrap();
+        let bvh = bvh::encode(amc.motion(), LengthUnit::Centimetre);
+        let bvh = Bvh::parse(bvh, &options).unwrap().motion().unwrap();
+        let new = Asf::parse(asf::encode(bvh.skeleton()), &options).unwrap();
+        let back = Amc::parse(amc::encode(&bvh), &new, &options).unwrap();
+        assert_eq!(back.motion().poses().len(), amc.motion().poses().len());
+        let mut worst = 0.0_f64;
+        for ((a, b), c) in
+            amc.motion().poses().iter().zip(bvh.poses()).zip(back.motion().poses())
+        {
+            let first = asf.skeleton().positions(a).unwrap();
+            let between = bvh.skeleton().positions(b).unwrap();
+            let last = new.skeleton().positions(c).unwrap();
+            for (index, joint) in asf.skeleton().joints().iter().enumerate() {
+                let other = new.skeleton().find(&joint.name).unwrap();
+                let middle = bvh.skeleton().find(&joint.name).unwrap();
+                worst = worst.max(distance(first[index], last[other]));
+                worst = worst.max(distance(first[index], between[middle]));
+            }
+        }
+        println!("{trial}: {:.6} mm", 1e3 * worst);
+        assert!(worst < 1e-5, "{trial}: {worst} m");
+    }
 }

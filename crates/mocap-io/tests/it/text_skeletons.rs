@@ -7,8 +7,8 @@ use mocap_io::{
     LengthUnit, ReadOptions,
     text::{
         TextError,
-        amc::Amc,
-        asf::{Asf, Dof},
+        amc::{self, Amc},
+        asf::{self, Asf, Dof},
         bvh::{self, Bvh, Channel},
     },
 };
@@ -116,6 +116,66 @@ fn motion_strategy() -> impl Strategy<Value = Motion> {
         });
         Motion::new(skeleton.unwrap(), 120.0, poses.collect()).unwrap()
     })
+}
+
+/// Largest distance of a joint from the same joint of another motion, by name, in metres.
+fn apart(a: &Motion, b: &Motion, name: impl Fn(&str) -> String) -> f64 {
+    let pairs: Vec<(usize, usize)> = a
+        .skeleton()
+        .joints()
+        .iter()
+        .enumerate()
+        .map(|(i, joint)| (i, b.skeleton().find(&name(&joint.name)).unwrap()))
+        .collect();
+    let mut worst = 0.0_f64;
+    assert_eq!(a.poses().len(), b.poses().len());
+    for (p, q) in a.poses().iter().zip(b.poses()) {
+        let (here, there) = (a.skeleton().positions(p).unwrap(), b.skeleton().positions(q).unwrap());
+        for &(i, j) in &pairs {
+            worst = worst.max(mocap_core::geometry::distance(here[i], there[j]));
+        }
+    }
+    worst
+}
+
+fn through_acclaim(motion: &Motion) -> Motion {
+    let options = ReadOptions::default();
+    let skeleton = Asf::parse(asf::encode(motion.skeleton()), &options).unwrap();
+    Amc::parse(amc::encode(motion), &skeleton, &options).unwrap().motion().clone()
+}
+
+#[test]
+fn acclaim_names_survive_what_the_format_means_by_words() {
+    let joint = |name: &str, parent, x| Joint { name: name.into(), parent, offset_m: [x, 0.0, 0.0] };
+    let skeleton = Skeleton::new(vec![
+        joint("Hips", None, 0.0),
+        joint("root", Some(0), 0.0),
+        joint("3rd rib", Some(0), 0.2),
+        joint("#1", Some(0), 0.3),
+        joint("Hips_end", Some(0), 0.4),
+    ]);
+    let skeleton = skeleton.unwrap();
+    let rest = Pose::rest(&skeleton);
+    let read = through_acclaim(&Motion::new(skeleton, 120.0, vec![rest]).unwrap());
+    let place = |name: &str| {
+        let at = read.skeleton().positions(&read.poses()[0]).unwrap();
+        at[read.skeleton().find(name).unwrap()][0]
+    };
+    for (name, x) in [("root", 0.0), ("root_2", 0.0), ("_3rd_rib", 0.2), ("_#1", 0.3), ("Hips_end", 0.4)] {
+        assert!((place(name) - x).abs() < 1e-9, "{name}");
+    }
+}
+
+proptest! {
+    #[test]
+    fn a_written_acclaim_pair_moves_the_same(motion in motion_strategy()) {
+        prop_assume!(!motion.poses().is_empty());
+        let read = through_acclaim(&motion);
+        // As for BVH below.
+        prop_assert!(apart(&motion, &read, |name| name.replace(' ', "_")) < 1e-7);
+        prop_assert_eq!(asf::encode(read.skeleton()), asf::encode(motion.skeleton()));
+        prop_assert!(apart(&read, &through_acclaim(&read), str::to_owned) < 1e-7);
+    }
 }
 
 proptest! {
