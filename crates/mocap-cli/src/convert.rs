@@ -31,8 +31,11 @@ pub(crate) struct Convert {
 impl Convert {
     pub(crate) fn run(self) -> Result<()> {
         let output = OutputArgs::new(self.output, self.force);
-        let inputs: Vec<&Path> =
-            [Some(&self.input), self.asf.as_ref()].into_iter().flatten().map(PathBuf::as_path).collect();
+        let inputs: Vec<&Path> = [Some(&self.input), self.asf.as_ref()]
+            .into_iter()
+            .flatten()
+            .map(PathBuf::as_path)
+            .collect();
         output.check(&inputs)?;
         let to = Format::of(&output.output)
             .with_context(|| format!("{}: unknown extension", output.output.display()))?;
@@ -50,10 +53,11 @@ impl Convert {
             if from == Some(to) {
                 file.bytes().to_vec()
             } else {
+                let bytes = encode_motion(file.motion(), to, file.info().unit)?;
                 if to == Format::Amc {
                     skeleton_beside(&output, &inputs, file.motion())?;
                 }
-                encode_motion(file.motion(), to, file.info().unit)?
+                bytes
             }
         };
         output.write(&bytes)
@@ -66,7 +70,7 @@ pub(crate) fn skeleton_beside(
     inputs: &[&Path],
     motion: &Motion,
 ) -> Result<PathBuf> {
-    let asf = output.with_extension(Format::Asf.extension());
+    let asf = output.named(&output.output.with_extension(Format::Asf.extension()));
     asf.check(inputs)?;
     asf.write(&encode_motion(motion, Format::Asf, LengthUnit::Inch)?)?;
     Ok(asf.output)

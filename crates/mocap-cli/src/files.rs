@@ -66,9 +66,9 @@ impl OutputArgs {
         Self { output, force }
     }
 
-    /// An output of the same name with another extension.
-    pub(crate) fn with_extension(&self, extension: &str) -> Self {
-        Self { output: self.output.with_extension(extension), force: self.force }
+    /// Another output that may replace a file if this one may.
+    pub(crate) fn named(&self, output: &Path) -> Self {
+        Self { output: output.to_owned(), force: self.force }
     }
 
     /// Refuses an output that is one of the inputs, or that exists when it may not be replaced, before any work is done.

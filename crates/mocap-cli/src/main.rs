@@ -1,4 +1,4 @@
-//! The `mocap` command: inspect, fill, convert, occlude, score and plot recordings.
+//! The `mocap` command: inspect, fill, solve, convert, occlude, score and plot recordings.
 #![allow(clippy::print_stderr)] // a command talks to its user
 
 mod bones;
@@ -15,13 +15,14 @@ mod plot;
 mod progress;
 mod say;
 mod score;
+mod solve;
 mod synth;
 
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-/// Fill, inspect and compare optical motion capture recordings
+/// Fill, solve, inspect and compare optical motion capture recordings
 #[derive(Debug, Parser)]
 #[command(
     name = "mocap",
@@ -31,6 +32,7 @@ use clap::{Parser, Subcommand};
   mocap detect walk.c3d               list samples that no body can have made
   mocap fill walk.c3d -o filled.c3d   fill the gaps; nothing else in the file changes
   mocap plot walk.c3d filled.c3d -o fill.svg
+  mocap solve walk.c3d -o walk.bvh    markers into the motion of a skeleton
 
 Files: C3D, TRC, CSV, TSV for markers; BVH and ASF/AMC for skeletons; each also with .gz.
 Inputs are never overwritten, and an output appears whole or not at all."
@@ -45,6 +47,7 @@ enum Command {
     Inspect(inspect::Inspect),
     Detect(detect::Detect),
     Fill(fill::Fill),
+    Solve(solve::Solve),
     Plot(plot::Plot),
     Convert(convert::Convert),
     Occlude(occlude::Occlude),
@@ -60,6 +63,7 @@ fn main() -> ExitCode {
         Command::Inspect(command) => command.run(),
         Command::Detect(command) => command.run(),
         Command::Fill(command) => command.run(),
+        Command::Solve(command) => command.run(),
         Command::Plot(command) => command.run(),
         Command::Convert(command) => command.run(),
         Command::Occlude(command) => command.run(),

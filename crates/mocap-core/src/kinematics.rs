@@ -48,9 +48,7 @@ impl Skeleton {
         for (joint, &rotation) in joints.iter().zip(&pose.rotations) {
             let (origin, turn) = match joint.parent {
                 None => (add(pose.root_m, joint.offset_m), rotation),
-                Some(p) => {
-                    (frames.point(p, joint.offset_m), frames.rotations[p].after(rotation))
-                }
+                Some(p) => (frames.point(p, joint.offset_m), frames.rotations[p].after(rotation)),
             };
             frames.origins_m.push(origin);
             frames.rotations.push(turn);

@@ -1,6 +1,9 @@
 use std::sync::Arc;
 
-use crate::{CoreError, Rotation};
+use crate::{
+    CoreError, RigidTransform, Rotation,
+    geometry::{add, sub},
+};
 
 /// A joint of a skeleton.
 #[derive(Debug, Clone, PartialEq)]
@@ -125,5 +128,22 @@ impl Motion {
     #[must_use]
     pub fn poses(&self) -> &[Pose] {
         &self.poses
+    }
+
+    /// The same motion somewhere else, or in other axes.
+    ///
+    /// # Errors
+    /// None in practice; the signature is that of [`new`](Self::new).
+    pub fn transformed(&self, by: &RigidTransform) -> Result<Self, CoreError> {
+        let offset = self.skeleton.joints().first().map_or([0.0; 3], |root| root.offset_m);
+        let moved = |pose: &Pose| {
+            let mut rotations = pose.rotations.clone();
+            if let Some(root) = rotations.first_mut() {
+                *root = by.rotation.after(*root);
+            }
+            Pose { root_m: sub(by.apply(add(pose.root_m, offset)), offset), rotations }
+        };
+        let poses = self.poses.iter().map(moved).collect();
+        Self::new(Arc::clone(&self.skeleton), self.rate_hz, poses)
     }
 }

@@ -7,15 +7,20 @@ use crate::{
     draw::{to_png, to_svg},
 };
 
+mod animation;
 mod axes;
 mod cell;
 mod curve;
 mod page;
 mod spots;
+mod stills;
 mod timeline;
 
+pub use animation::animate_motion;
 use page::Page;
 pub use spots::{MAX_SPOTS, Spot, plot_spots};
+pub use stills::MotionPlot;
+use stills::View;
 
 /// Markers whose trajectories one figure can hold.
 pub const MAX_FIGURE_MARKERS: usize = 12;
@@ -145,4 +150,18 @@ pub fn render_svg(input: &PlotInput<'_>) -> Result<Vec<u8>, ReportError> {
 pub fn render_png(input: &PlotInput<'_>) -> Result<Vec<u8>, ReportError> {
     input.check()?;
     to_png(&Page::plan(input))
+}
+
+/// Draws a solved motion in the format that the path's extension names, and returns the bytes of the file: the skeleton
+/// with the markers at six moments, and how far the markers miss over time.
+///
+/// # Errors
+/// [`ReportError::Format`], and [`ReportError::Shape`] for markers of another length than the motion.
+pub fn plot_motion(plot: &MotionPlot<'_>, path: &Path) -> Result<Vec<u8>, ReportError> {
+    let format = FigureFormat::from_path(path)?;
+    let view = View::new(plot)?;
+    match format {
+        FigureFormat::Svg => to_svg(&view),
+        FigureFormat::Png => to_png(&view),
+    }
 }

@@ -13,8 +13,8 @@ pub use error::ReportError;
 static FONT: &[u8] = include_bytes!("../fonts/DejaVuSans-subset.ttf");
 
 pub use figure::{
-    FigureFormat, MAX_FIGURE_MARKERS, MAX_SPOTS, PlotInput, Spot, plot_spots, plot_take,
-    render_png, render_svg,
+    FigureFormat, MAX_FIGURE_MARKERS, MAX_SPOTS, MotionPlot, PlotInput, Spot, animate_motion,
+    plot_motion, plot_spots, plot_take, render_png, render_svg,
 };
 pub use html::{html_page, web_page};
 pub use summary::{BrokenBones, FillSummary, GapFill, GapSummary, MarkerSummary, TakeSummary};

@@ -104,6 +104,29 @@ const CMU_41: [Site; 41] = [
     site("RTOE", [R_ANKLE, R_TOE],            0.55, [0.145, 0.005, -0.040],   0.20),
 ];
 
+/// Where a marker of the layout sits on the body that all others vary from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MarkerSite {
+    /// Name of the marker.
+    pub label: &'static str,
+    /// The joint of the skeleton that carries it.
+    pub joint: usize,
+    /// The joint that pulls at the skin with it, and its share from 0 to 1.
+    pub pull: (usize, f64),
+    /// From the first joint in the rest pose, in metres, on a body of 1.75 m.
+    pub offset_m: [f64; 3],
+}
+
+/// The sites of the layout's markers, in column order.
+pub fn marker_sites() -> impl Iterator<Item = MarkerSite> {
+    CMU_41.iter().map(|site| MarkerSite {
+        label: site.label,
+        joint: site.joints[0],
+        pull: (site.joints[1], site.pull),
+        offset_m: site.offset_m,
+    })
+}
+
 /// A marker on one body.
 pub(crate) struct Worn {
     joints: [usize; 2],

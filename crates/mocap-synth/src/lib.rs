@@ -13,5 +13,6 @@ mod skin;
 mod synth;
 
 pub use error::SynthError;
+pub use layout::{MarkerSite, marker_sites};
 pub use params::{Activity, SynthParams};
 pub use synth::{Synth, SyntheticTake};

@@ -70,3 +70,45 @@ fn the_number_of_threads_changes_no_bit() {
     }
     assert_eq!(bench.read("1.c3d"), bench.read("2.c3d"));
 }
+
+#[test]
+fn skeletons_go_from_bvh_to_acclaim_and_back() {
+    let bench = Bench::new();
+    let bvh = "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\n\
+        CHANNELS 6 Xposition Yposition Zposition Zrotation Yrotation Xrotation\n\
+        JOINT Knee\n{\nOFFSET 5 -40 0\nCHANNELS 3 Zrotation Yrotation Xrotation\n\
+        End Site\n{\nOFFSET 0 -40 0\n}\n}\n}\n\
+        MOTION\nFrames: 2\nFrame Time: 0.0083333\n\
+        1 90 3 10 20 30 0 0 45\n2 91 3 11 21 31 0 5 50\n";
+    std::fs::write(bench.path("a.bvh"), bvh).unwrap();
+    bench.ok("convert a.bvh b.amc");
+    assert!(String::from_utf8(bench.read("b.asf")).unwrap().contains("name to_Knee"));
+    bench.ok("convert b.amc c.bvh --unit in");
+    let numbers = |name: &str| -> Vec<f64> {
+        let text = String::from_utf8(bench.read(name)).unwrap();
+        let motion = text.lines().skip_while(|line| !line.starts_with("Frame Time")).skip(1);
+        motion.flat_map(str::split_whitespace).map(|word| word.parse().unwrap()).collect()
+    };
+    let (before, after) = (numbers("a.bvh"), numbers("c.bvh"));
+    // The root and its stiff bone, then the knee; lengths in inches.
+    let expected = |frame: usize| -> Vec<f64> {
+        let row = &before[9 * frame..9 * frame + 9];
+        let lengths = row[..3].iter().map(|cm| cm / 2.54);
+        lengths
+            .chain(row[3..6].iter().copied())
+            .chain([0.0; 3])
+            .chain(row[6..].iter().copied())
+            .collect()
+    };
+    for (frame, row) in after.chunks(12).enumerate() {
+        for (found, wanted) in row.iter().zip(expected(frame)) {
+            // Six decimals of a degree are written twice.
+            assert!((found - wanted).abs() < 3e-6, "{row:?} {:?}", expected(frame));
+        }
+    }
+    let error = bench.fails("convert a.bvh b.amc");
+    assert!(error.contains("b.amc exists"), "{error}");
+    bench.ok("convert b.asf d.bvh");
+    assert!(bench.fails("convert d.bvh e.amc").contains("no frame"));
+    assert!(!crate::exists(&bench.path("e.asf")), "a refused conversion leaves nothing behind");
+}

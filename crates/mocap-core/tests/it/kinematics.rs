@@ -1,6 +1,6 @@
 //! Forward kinematics against matrices by hand, its Jacobian against finite differences.
 
-use mocap_core::{Joint, Pose, Rotation, Skeleton, geometry::distance};
+use mocap_core::{Joint, Motion, Pose, RigidTransform, Rotation, Skeleton, geometry::distance};
 use proptest::prelude::*;
 
 fn tree() -> Skeleton {
@@ -42,6 +42,21 @@ proptest! {
             prop_assert!(distance(frames.point(joint, local), expected) < 1e-13);
         }
         prop_assert_eq!(skeleton.positions(&pose).unwrap(), frames.origins_m);
+    }
+
+    #[test]
+    fn a_transformed_motion_moves_every_joint(
+        pose in pose(),
+        turn in prop::array::uniform3(-3.0..3.0_f64),
+        by in prop::array::uniform3(-3.0..3.0_f64),
+    ) {
+        let motion = Motion::new(tree(), 120.0, vec![pose]).unwrap();
+        let by = RigidTransform { rotation: Rotation::exp(turn), translation: by };
+        let moved = motion.transformed(&by).unwrap();
+        let places = |m: &Motion| m.skeleton().positions(&m.poses()[0]).unwrap();
+        for (before, after) in places(&motion).into_iter().zip(places(&moved)) {
+            prop_assert!(distance(by.apply(before), after) < 1e-13);
+        }
     }
 
     #[test]

@@ -41,9 +41,8 @@ fn vector() -> impl Strategy<Value = [f64; 3]> {
         Just([0.0, 0.0, 1.0]),
         Just([1.0, 1.0, 0.0]),
     ];
-    (direction, length).prop_filter_map("no direction", |(d, l)| {
-        (norm(d) > 1e-3).then(|| scale(l / norm(d), d))
-    })
+    (direction, length)
+        .prop_filter_map("no direction", |(d, l)| (norm(d) > 1e-3).then(|| scale(l / norm(d), d)))
 }
 
 proptest! {

@@ -286,9 +286,7 @@ fn acclaim_to_bvh_and_back_keeps_every_joint() {
         let back = Amc::parse(amc::encode(&bvh), &new, &options).unwrap();
         assert_eq!(back.motion().poses().len(), amc.motion().poses().len());
         let mut worst = 0.0_f64;
-        for ((a, b), c) in
-            amc.motion().poses().iter().zip(bvh.poses()).zip(back.motion().poses())
-        {
+        for ((a, b), c) in amc.motion().poses().iter().zip(bvh.poses()).zip(back.motion().poses()) {
             let first = asf.skeleton().positions(a).unwrap();
             let between = bvh.skeleton().positions(b).unwrap();
             let last = new.skeleton().positions(c).unwrap();

@@ -38,7 +38,8 @@ pub fn encode(skeleton: &Skeleton) -> Vec<u8> {
             children[parent].push(&bone.name);
         }
     }
-    for (bone, children) in bones.iter().zip(children).filter(|(_, children)| !children.is_empty()) {
+    for (bone, children) in bones.iter().zip(children).filter(|(_, children)| !children.is_empty())
+    {
         let _ = writeln!(out, "    {} {}", bone.name, children.join(" "));
     }
     out.push_str("  end\n");

@@ -1,0 +1,309 @@
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+    time::Instant,
+};
+
+use anyhow::{Context, Result, bail};
+use clap::{Args, ValueEnum};
+use mocap_core::{MarkerKnowledge, Motion, RigidTransform, Rotation, Take, UpAxis};
+use mocap_io::{Format, LengthUnit, MotionFile, encode_markers, encode_motion};
+use mocap_report::{FigureFormat, MotionPlot, animate_motion, plot_motion};
+use serde_json::{Value, json};
+use solve_ik::{Body, IkParams, IkSolver, Solution};
+
+use crate::{
+    convert::skeleton_beside,
+    files::{OutputArgs, ReadArgs},
+    progress::Progress,
+    say::say,
+};
+
+/// Solve labelled markers, gaps and all, into the motion of a skeleton
+///
+/// The body is fitted to the wearer first (lengths of bones, places of markers), then every frame is solved. Missing
+/// markers are simply absent. The output is BVH, AMC with its ASF beside it, ASF, or JSON (positions in metres,
+/// quaternions w x y z). BVH and ASF/AMC are written with y up, as their readers expect.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  mocap solve walk.c3d -o walk.bvh
+  mocap solve walk.c3d -o walk.amc --skeleton subject.asf
+  mocap solve walk.c3d -o walk.bvh --plot walk.svg --animate film.svg --markers clean.c3d
+
+Bodies: `generic` knows the 41 markers of the CMU database and the Plug-in Gait names of the same places. An .asf, .amc
+or .bvh file gives the bones of a known skeleton whose joints have the generic body's names. Any other body is a text
+file: print the generic one with --save-body, and change what differs.")]
+pub(crate) struct Solve {
+    /// Recording of labelled markers
+    input: PathBuf,
+    #[command(flatten)]
+    output: OutputArgs,
+    /// Body to solve for: `generic`, a body file (.body), or a skeleton (.asf, .amc, .bvh) whose bones are known
+    #[arg(long, value_name = "FILE|generic", default_value = "generic")]
+    skeleton: String,
+    /// How to solve
+    #[arg(long, value_enum, default_value = "ik")]
+    method: Method,
+    /// Take the body as it is, without fitting it to the wearer
+    #[arg(long)]
+    no_calibration: bool,
+    /// Keep the fitted body for other takes of the same session
+    #[arg(long, value_name = "FILE.body")]
+    save_body: Option<PathBuf>,
+    /// Write where the solved body would show its markers: clean, and without gaps
+    #[arg(long, value_name = "FILE")]
+    markers: Option<PathBuf>,
+    /// Draw skeleton and markers at six moments, and how far the markers miss (.svg, .png)
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
+    /// Draw an animation that browsers play (.svg)
+    #[arg(long, value_name = "FILE")]
+    animate: Option<PathBuf>,
+    /// Axes of the written motion
+    #[arg(long, value_enum, default_value = "y-up")]
+    axes: Axes,
+    /// Threads to use; the result is the same for any number
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    read: ReadArgs,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Method {
+    /// Calibration, then Levenberg-Marquardt a frame
+    Ik,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Axes {
+    /// y up, turned if the recording has z up
+    YUp,
+    /// As in the recording
+    Keep,
+}
+
+impl Solve {
+    pub(crate) fn run(self) -> Result<()> {
+        let format = self.check()?;
+        if let Some(threads) = self.threads {
+            rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
+        }
+        let Method::Ik = self.method;
+        let body = body(&self.skeleton, &self.read)?;
+        let file = self.read.read(&self.input)?;
+        let take = file.take();
+        let mut params = IkParams::default();
+        if self.no_calibration {
+            params.calibration_rounds = 0;
+        }
+        let solver = IkSolver::new(body, params)?;
+        let progress = Progress::new("ik", self.json);
+        let start = Instant::now();
+        let solution = solver.solve_observed(take, &mut |report| progress.show(report));
+        let seconds = start.elapsed().as_secs_f64();
+        progress.finish();
+        let solution =
+            solution.with_context(|| format!("cannot solve {}", self.input.display()))?;
+        let up = UpAxis::guess(take, &MarkerKnowledge::cmu_41()).unwrap_or(UpAxis::Z);
+        let motion = match (self.axes, up) {
+            (Axes::YUp, UpAxis::Z) => lie_down(&solution.motion)?,
+            _ => solution.motion.clone(),
+        };
+        self.write(format, &motion)?;
+        let info = file.info();
+        self.write_others(take, &solution, up, info.unit, info.first_frame)?;
+        self.tell(take, &solution, seconds);
+        Ok(())
+    }
+
+    /// Everything that can be refused before any work is done.
+    fn check(&self) -> Result<Format> {
+        let skeleton = Path::new(&self.skeleton);
+        self.output.check(&[&self.input, skeleton])?;
+        let others = [&self.save_body, &self.markers, &self.plot, &self.animate];
+        for path in others.into_iter().flatten() {
+            let other = self.output.named(path);
+            other.check(&[&self.input, skeleton, &self.output.output])?;
+        }
+        if self.threads == Some(0) {
+            bail!("--threads must be at least 1");
+        }
+        if let Some(path) = &self.plot {
+            FigureFormat::from_path(path)?;
+        }
+        if let Some(path) = &self.animate
+            && FigureFormat::from_path(path)? != FigureFormat::Svg
+        {
+            bail!("{}: an animation is an .svg file", path.display());
+        }
+        if let Some(path) = &self.markers
+            && !Format::of(path).is_some_and(Format::holds_markers)
+        {
+            bail!("{}: markers go into .c3d, .trc, .csv or .tsv files", path.display());
+        }
+        let output = &self.output.output;
+        if is_json(output) {
+            return Ok(Format::Bvh);
+        }
+        match Format::of(output) {
+            Some(format) if !format.holds_markers() => Ok(format),
+            _ => bail!("{}: a solved motion goes into .bvh, .amc, .asf or .json", output.display()),
+        }
+    }
+
+    fn write(&self, format: Format, motion: &Motion) -> Result<()> {
+        if is_json(&self.output.output) {
+            return self.output.write(&serde_json::to_vec(&motion_json(motion)?)?);
+        }
+        let bytes = encode_motion(motion, format, LengthUnit::Centimetre)?;
+        if format == Format::Amc {
+            skeleton_beside(&self.output, &[&self.input, Path::new(&self.skeleton)], motion)?;
+        }
+        self.output.write(&bytes)
+    }
+
+    fn write_others(
+        &self,
+        take: &Take,
+        solution: &Solution,
+        up: UpAxis,
+        unit: LengthUnit,
+        first_frame: i64,
+    ) -> Result<()> {
+        let write =
+            |path: &Path, bytes: &[u8]| -> Result<()> { self.output.named(path).write(bytes) };
+        if let Some(path) = &self.save_body {
+            write(path, solution.body.to_string().as_bytes())?;
+        }
+        if let Some(path) = &self.markers {
+            let format = Format::of(path).context("the extension was checked")?;
+            let markers = Arc::clone(take.markers());
+            let clean = Take::from_positions(markers, take.rate_hz(), solution.markers.clone())?;
+            write(path, &encode_markers(&clean, format, unit, first_frame)?)?;
+        }
+        let title = self.input.file_name().unwrap_or_default().to_string_lossy();
+        let plot = MotionPlot {
+            title: &title,
+            motion: &solution.motion,
+            take,
+            residual_m: &solution.residual_m,
+            up,
+        };
+        if let Some(path) = &self.plot {
+            write(path, &plot_motion(&plot, path)?)?;
+        }
+        if let Some(path) = &self.animate {
+            write(path, &animate_motion(&plot)?)?;
+        }
+        Ok(())
+    }
+
+    fn tell(&self, take: &Take, solution: &Solution, seconds: f64) {
+        let shown: Vec<f64> =
+            solution.residual_m.iter().copied().filter(|r| r.is_finite()).collect();
+        let mean_mm = 1e3 * shown.iter().sum::<f64>() / shown.len().max(1) as f64;
+        let worst = solution
+            .residual_m
+            .iter()
+            .enumerate()
+            .filter(|(_, r)| r.is_finite())
+            .max_by(|a, b| a.1.total_cmp(b.1));
+        let frames = take.frames();
+        let dark = frames - shown.len();
+        if self.json {
+            let object = json!({
+                "frames": frames, "joints": solution.motion.skeleton().joints().len(), "seconds": seconds,
+                "mean_residual_mm": mean_mm,
+                "largest_residual_mm": worst.map(|(_, r)| 1e3 * r), "largest_residual_frame": worst.map(|(t, _)| t),
+                "frames_without_markers": dark, "unconverged_frames": solution.unconverged,
+                "unmapped_markers": solution.unmapped, "termination": solution.termination.as_str(),
+                "calibration": solution.calibration.iter().map(|round| json!({
+                    "frames": round.frames, "steps": round.steps,
+                })).collect::<Vec<_>>(),
+            });
+            say!("{object}");
+            return;
+        }
+        say!("frames           {frames:>10}");
+        say!("markers miss by  {mean_mm:>10.2} mm on average");
+        if let Some((frame, residual)) = worst {
+            say!("at most          {:>10.2} mm in frame {} of the take", 1e3 * residual, frame + 1);
+        }
+        if dark > 0 {
+            say!("without markers  {dark:>10} frames: their poses are interpolated");
+        }
+        if solution.unconverged > 0 {
+            say!("not settled      {:>10} frames: look at them in the plot", solution.unconverged);
+        }
+        if !solution.unmapped.is_empty() {
+            say!("not on the body  {}", solution.unmapped.join(", "));
+        }
+        say!("wrote {} in {seconds:.1} s", self.output.output.display());
+    }
+}
+
+fn is_json(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"))
+}
+
+/// The body that `--skeleton` names.
+fn body(name: &str, read: &ReadArgs) -> Result<Body> {
+    if name == "generic" {
+        return Ok(Body::cmu_41());
+    }
+    let path = Path::new(name);
+    match Format::of(path) {
+        Some(format) if !format.holds_markers() => {
+            let file = MotionFile::read(path, None, &read.options())?;
+            let skeleton = Arc::clone(file.motion().skeleton());
+            Body::cmu_41()
+                .on(skeleton)
+                .with_context(|| format!("{name} does not fit the generic body"))
+        }
+        Some(_) => bail!("{name} holds markers; a skeleton is an .asf, .amc, .bvh or .body file"),
+        None => {
+            let text = std::fs::read_to_string(path)
+                .with_context(|| format!("cannot read the body {name}"))?;
+            Ok(Body::parse(&text, name)?)
+        }
+    }
+}
+
+/// The motion with z up turned to y up: x becomes z, y becomes x, z becomes y.
+fn lie_down(motion: &Motion) -> Result<Motion> {
+    let turn = Rotation::from_matrix(&[[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]);
+    let rotation = turn.context("a permutation of the axes is a rotation")?;
+    Ok(motion.transformed(&RigidTransform { rotation, translation: [0.0; 3] })?)
+}
+
+/// Joints, and for each frame their places in metres and rotations relative to the parent as w, x, y, z.
+fn motion_json(motion: &Motion) -> Result<Value> {
+    let skeleton = motion.skeleton();
+    let joints: Vec<Value> = skeleton
+        .joints()
+        .iter()
+        .map(
+            |joint| json!({"name": joint.name, "parent": joint.parent, "offset_m": joint.offset_m}),
+        )
+        .collect();
+    let mut frames = Vec::with_capacity(motion.poses().len());
+    for pose in motion.poses() {
+        let rotations: Vec<[f64; 4]> = pose
+            .rotations
+            .iter()
+            .map(|rotation| {
+                let (w, [x, y, z]) = rotation.quaternion();
+                [w, x, y, z]
+            })
+            .collect();
+        let positions_m = skeleton.positions(pose)?;
+        frames.push(
+            json!({"root_m": pose.root_m, "rotations": rotations, "positions_m": positions_m}),
+        );
+    }
+    Ok(json!({"rate_hz": motion.rate_hz(), "joints": joints, "frames": frames}))
+}

@@ -1,0 +1,388 @@
+//! Bone lengths and marker places of one body, from frames that differ.
+//!
+//! All of it is one least-squares problem: the shared unknowns s (a place a joint, a place a marker) and the poses p of some
+//! frames. Given s, frames do not know of each other, so their normal equations are eliminated frame by frame,
+//!
+//! ```text
+//! (Hss − Σ Hpsᵀ Hpp⁻¹ Hps) Δs = −gs + Σ Hpsᵀ Hpp⁻¹ gp
+//! ```
+//!
+//! which moves bones, markers and poses together. Alternating between them crawls, because a joint that lies
+//! wrong is made up for by turned poses.
+
+use std::sync::Arc;
+
+use mocap_core::{
+    Skeleton, Take,
+    geometry::{add, cross, distance, dot, scale, sub, times},
+};
+use rayon::prelude::*;
+
+use crate::{
+    IkError, IkParams,
+    body::Body,
+    dense,
+    frame::{FrameSolver, Seen, Ties},
+    tree::{State, Tree},
+};
+
+type Matrix = [[f64; 3]; 3];
+
+/// Frames that say as much as one about where a joint or a marker is: skin slides with the pose, and so the markers of
+/// many frames miss in the same way.
+const ALIKE: f64 = 20.0;
+/// Steps at most, and the share of the cost below which a step is the last.
+const STEPS: usize = 25;
+const ENOUGH: f64 = 1e-5;
+
+/// A frame to calibrate on.
+#[derive(Debug, Clone)]
+pub(crate) struct Sample {
+    pub(crate) seen: Vec<Seen>,
+    pub(crate) state: State,
+}
+
+/// How a calibration ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Calibrated {
+    pub(crate) cost: f64,
+    pub(crate) steps: usize,
+}
+
+/// Adjusts the joints and markers of a tree, and the poses of the samples, to fit together; `template` is
+/// where they are expected.
+pub(crate) fn calibrate(
+    tree: &mut Tree,
+    samples: &mut [Sample],
+    template: &Tree,
+    body: &Body,
+    params: &IkParams,
+) -> Calibrated {
+    let layout = Layout::new(tree, template, body);
+    let mut cost = layout.cost(tree, samples, params);
+    let mut damping = 1e-3;
+    for step in 0..STEPS {
+        let system = layout.system(tree, samples, params, damping);
+        let next = system.and_then(|system| layout.advance(tree, samples, &system)).map(
+            |(tree, samples)| {
+                let cost = layout.cost(&tree, &samples, params);
+                (tree, samples, cost)
+            },
+        );
+        match next {
+            Some((new_tree, new_samples, next)) if next < cost => {
+                let gain = (cost - next) / cost;
+                *tree = new_tree;
+                samples.clone_from_slice(&new_samples);
+                cost = next;
+                damping = (damping * 0.1_f64).max(1e-9);
+                if gain < ENOUGH {
+                    return Calibrated { cost, steps: step + 1 };
+                }
+            }
+            _ if damping > 1e3 => return Calibrated { cost, steps: step + 1 },
+            _ => damping *= 10.0,
+        }
+    }
+    Calibrated { cost, steps: STEPS }
+}
+
+/// Which shared unknown is what: three numbers a block.
+struct Layout {
+    /// Block of each joint's offset.
+    offsets: Vec<Option<usize>>,
+    /// First block of the markers' places.
+    places: usize,
+    /// Expected value and weight of each block.
+    expected: Vec<([f64; 3], f64)>,
+}
+
+/// Reduced equations of the shared unknowns, solved, and what the frames need to follow.
+struct System {
+    shared: Vec<f64>,
+    frames: Vec<FrameSystem>,
+}
+
+struct FrameSystem {
+    step: Vec<[f64; 3]>,
+    /// Hpp⁻¹ Hps, one column of rows for each shared unknown.
+    columns: Vec<Vec<[f64; 3]>>,
+}
+
+impl Layout {
+    fn new(tree: &Tree, template: &Tree, body: &Body) -> Self {
+        let mut expected = Vec::new();
+        let mut offsets = vec![None; tree.len()];
+        if body.bone_spread > 0.0 {
+            // The root's own offset is part of its translation.
+            for (j, offset) in offsets.iter_mut().enumerate().skip(1) {
+                *offset = Some(expected.len());
+                expected.push((template.offsets[j], ALIKE * body.bone_spread.powi(-2)));
+            }
+        }
+        let places = expected.len();
+        let site = |a: &crate::tree::Anchor| (a.place, ALIKE * body.sites[a.site].spread.powi(-2));
+        expected.extend(template.anchors.iter().map(site));
+        Self { offsets, places, expected }
+    }
+
+    fn value(&self, tree: &Tree, block: usize) -> [f64; 3] {
+        if block >= self.places {
+            return tree.anchors[block - self.places].place;
+        }
+        // Joints come in order, the root left out.
+        tree.offsets[block + 1]
+    }
+
+    fn cost(&self, tree: &Tree, samples: &[Sample], params: &IkParams) -> f64 {
+        let prior: f64 = (0..self.expected.len())
+            .map(|block| {
+                let off = sub(self.value(tree, block), self.expected[block].0);
+                self.expected[block].1 * dot(off, off)
+            })
+            .sum();
+        let free = vec![0.0; tree.len()];
+        let costs: Vec<f64> = samples
+            .par_iter()
+            .map_init(
+                || FrameSolver::new(tree, params),
+                |solver, sample| {
+                    let ties = Ties { target: &sample.state, shift: 0.0, turns: &free };
+                    solver.cost(&sample.state, &sample.seen, &ties)
+                },
+            )
+            .collect();
+        prior + costs.iter().sum::<f64>()
+    }
+
+    /// The solved step of the shared unknowns; `None` where the equations have no solution.
+    fn system(
+        &self,
+        tree: &Tree,
+        samples: &[Sample],
+        params: &IkParams,
+        damping: f64,
+    ) -> Option<System> {
+        let count = 3 * self.expected.len();
+        let parts: Vec<Option<(Vec<f64>, Vec<f64>, FrameSystem)>> = samples
+            .par_iter()
+            .map(|sample| self.eliminate(tree, sample, params, damping))
+            .collect();
+        let mut matrix = vec![0.0; count * count];
+        let mut right = vec![0.0; count];
+        for (block, (expected, weight)) in self.expected.iter().enumerate() {
+            let off = sub(self.value(tree, block), *expected);
+            for a in 0..3 {
+                let at = 3 * block + a;
+                matrix[at * count + at] = *weight;
+                right[at] = -weight * off[a];
+            }
+        }
+        let mut frames = Vec::with_capacity(samples.len());
+        for part in parts {
+            let (part, gradient, frame) = part?;
+            matrix.iter_mut().zip(part).for_each(|(sum, term)| *sum += term);
+            right.iter_mut().zip(gradient).for_each(|(sum, term)| *sum -= term);
+            frames.push(frame);
+        }
+        for at in 0..count {
+            matrix[at * count + at] *= 1.0 + damping;
+        }
+        dense::solve(&mut matrix, &mut right).then_some(System { shared: right, frames })
+    }
+
+    /// What a frame says about the shared unknowns once its pose is eliminated: lower triangle and gradient.
+    fn eliminate(
+        &self,
+        tree: &Tree,
+        sample: &Sample,
+        params: &IkParams,
+        damping: f64,
+    ) -> Option<(Vec<f64>, Vec<f64>, FrameSystem)> {
+        let count = 3 * self.expected.len();
+        let free = vec![0.0; tree.len()];
+        let mut solver = FrameSolver::new(tree, params);
+        let ties = Ties { target: &sample.state, shift: 0.0, turns: &free };
+        solver.cost(&sample.state, &sample.seen, &ties);
+        solver.linearise(&sample.state, &sample.seen, &ties);
+        let mut matrix = vec![0.0; count * count];
+        let mut gradient = vec![0.0; count];
+        let mut columns = vec![vec![[0.0; 3]; solver.normal.rows()]; count];
+        for (&(anchor, at), &miss) in sample.seen.iter().zip(&solver.misses) {
+            let weight = solver.weight(miss);
+            let slopes = self.slopes(tree, &solver, anchor as usize);
+            let arms = arms(tree, &solver, anchor as usize, add(at, miss));
+            for (i, (block, slope)) in slopes.iter().enumerate() {
+                for a in 0..3 {
+                    let column = [slope[0][a], slope[1][a], slope[2][a]];
+                    let at = 3 * block + a;
+                    gradient[at] += weight * dot(column, miss);
+                    columns[at][0] = add(columns[at][0], scale(weight, column));
+                    for (row, arm) in &arms {
+                        columns[at][*row] =
+                            add(columns[at][*row], scale(weight, cross(*arm, column)));
+                    }
+                    for (other, slope) in &slopes[..=i] {
+                        for b in 0..3 {
+                            let (low, high) = (3 * other + b, at);
+                            let (low, high) = if low <= high { (low, high) } else { (high, low) };
+                            // Within one block both orders come by; the lower triangle takes one.
+                            if other != block || b <= a {
+                                matrix[high * count + low] +=
+                                    weight * dot(column, [slope[0][b], slope[1][b], slope[2][b]]);
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        solver.normal.factor(damping).ok()?;
+        let mut step: Vec<[f64; 3]> = solver.normal.gradient.clone();
+        let mut half_gradient = step.clone();
+        solver.normal.half_solve(&mut half_gradient);
+        let mut halves = columns.clone();
+        halves.iter_mut().for_each(|column| solver.normal.half_solve(column));
+        let inner = |p: &[[f64; 3]], q: &[[f64; 3]]| -> f64 {
+            p.iter().zip(q).map(|(x, y)| dot(*x, *y)).sum()
+        };
+        for i in 0..count {
+            gradient[i] -= inner(&halves[i], &half_gradient);
+            for j in 0..=i {
+                matrix[i * count + j] -= inner(&halves[i], &halves[j]);
+            }
+        }
+        solver.normal.solve(&mut step);
+        columns.iter_mut().for_each(|column| solver.normal.solve(column));
+        Some((matrix, gradient, FrameSystem { step, columns }))
+    }
+
+    /// How a marker moves with each shared unknown that it depends on.
+    fn slopes(&self, tree: &Tree, solver: &FrameSolver<'_>, anchor: usize) -> Vec<(usize, Matrix)> {
+        let placed = &solver.placed;
+        let marker = &tree.anchors[anchor];
+        let near = placed[marker.near].axes;
+        let mut slopes = Vec::new();
+        let mut own = near;
+        if let Some((far, share)) = marker.far {
+            let blend = |p: &Matrix, q: &Matrix| -> Matrix {
+                std::array::from_fn(|r| add(p[r], scale(share, sub(q[r], p[r]))))
+            };
+            own = blend(&near, &placed[far].axes);
+            if let Some(block) = self.offsets[far] {
+                slopes.push((block, std::array::from_fn(|r| sub(near[r], own[r]))));
+            }
+        }
+        let mut j = marker.near;
+        while j > 0 {
+            if let Some(block) = self.offsets[j] {
+                slopes.push((block, placed[tree.parents[j]].axes));
+            }
+            j = tree.parents[j];
+        }
+        slopes.push((self.places + anchor, own));
+        slopes
+    }
+
+    /// Tree and samples after a step.
+    fn advance(
+        &self,
+        tree: &Tree,
+        samples: &[Sample],
+        system: &System,
+    ) -> Option<(Tree, Vec<Sample>)> {
+        let three = |block: usize| {
+            [system.shared[3 * block], system.shared[3 * block + 1], system.shared[3 * block + 2]]
+        };
+        if system.shared.iter().any(|c| !c.is_finite()) {
+            return None;
+        }
+        let mut next = tree.clone();
+        for (j, block) in self.offsets.iter().enumerate() {
+            if let Some(block) = *block {
+                next.offsets[j] = add(next.offsets[j], three(block));
+            }
+        }
+        for (a, anchor) in next.anchors.iter_mut().enumerate() {
+            anchor.place = add(anchor.place, three(self.places + a));
+        }
+        let mut solver = FrameSolver::new(tree, &IkParams::default());
+        let moved = samples.iter().zip(&system.frames).map(|(sample, frame)| {
+            let mut step: Vec<[f64; 3]> = frame.step.iter().map(|s| scale(-1.0, *s)).collect();
+            for (column, by) in frame.columns.iter().zip(&system.shared) {
+                for (sum, term) in step.iter_mut().zip(column) {
+                    *sum = sub(*sum, scale(*by, *term));
+                }
+            }
+            tree.place(&sample.state, &mut solver.placed);
+            Sample { seen: sample.seen.clone(), state: solver.moved(&sample.state, &step) }
+        });
+        Some((next, moved.collect()))
+    }
+}
+
+/// Rows of the joints that move a marker, and from where they do.
+fn arms(
+    tree: &Tree,
+    solver: &FrameSolver<'_>,
+    anchor: usize,
+    at: [f64; 3],
+) -> Vec<(usize, [f64; 3])> {
+    let marker = &tree.anchors[anchor];
+    let mut arms = Vec::new();
+    if let Some((far, share)) = marker.far {
+        let local = sub(marker.place, tree.offsets[far]);
+        arms.push((far + 1, scale(share, times(&solver.placed[far].axes, local))));
+    }
+    let chain = solver.normal.chain(marker.near + 1);
+    arms.extend(
+        chain[..chain.len() - 1].iter().map(|&row| (row, sub(at, solver.placed[row - 1].origin))),
+    );
+    arms
+}
+
+/// The body with the joints and markers of a calibrated tree, which started as `before`.
+pub(crate) fn dressed(body: &Body, before: &Tree, after: &Tree) -> Result<Body, IkError> {
+    let mut joints = body.skeleton.joints().to_vec();
+    for j in 0..before.len() {
+        let moved = sub(after.offsets[j], before.offsets[j]);
+        let joint = &mut joints[before.joints[j]];
+        joint.offset_m = add(joint.offset_m, moved);
+    }
+    let mut sites = body.sites.clone();
+    for (old, new) in before.anchors.iter().zip(&after.anchors) {
+        let site = &mut sites[old.site];
+        site.place = add(site.place, sub(new.place, old.place));
+    }
+    Ok(Body { skeleton: Arc::new(Skeleton::new(joints)?), sites, ..body.clone() })
+}
+
+/// Size of the wearer over that of the body: the middle ratio of distances between markers that stay the same, or nearly so.
+pub(crate) fn size(body: &Body, columns: &[Option<usize>], take: &Take) -> f64 {
+    /// A distance that varies by more, as a share, says something about the pose.
+    const STEADY: f64 = 0.04;
+    /// Shorter distances say more about where markers were stuck on, in metres.
+    const LONG_M: f64 = 0.2;
+    const FRAMES: usize = 200;
+    let rest = body.rest_places();
+    let step = take.frames().div_ceil(FRAMES).max(1);
+    let mut ratios = Vec::new();
+    for a in 0..rest.len() {
+        for b in 0..a {
+            let (Some(p), Some(q)) = (columns[a], columns[b]) else { continue };
+            let expected = distance(rest[a], rest[b]);
+            if expected < LONG_M {
+                continue;
+            }
+            let seen: Vec<f64> =
+                (0..take.frames()).step_by(step).filter_map(|t| take.distance(t, p, q)).collect();
+            let mean = seen.iter().sum::<f64>() / seen.len().max(1) as f64;
+            let spread =
+                seen.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / seen.len().max(1) as f64;
+            if seen.len() >= FRAMES.min(take.frames()) / 4 && spread.sqrt() < STEADY * mean {
+                ratios.push(mean / expected);
+            }
+        }
+    }
+    ratios.sort_by(f64::total_cmp);
+    ratios.get(ratios.len() / 2).copied().filter(|r| r.is_finite() && *r > 0.0).unwrap_or(1.0)
+}

@@ -1,0 +1,23 @@
+#![doc = include_str!("../README.md")]
+
+mod body;
+mod bridge;
+mod calibrate;
+mod choose;
+mod dense;
+mod error;
+mod filler;
+mod frame;
+mod normal;
+mod params;
+mod sight;
+mod solver;
+mod start;
+mod track;
+mod tree;
+
+pub use body::Body;
+pub use error::IkError;
+pub use filler::IkFiller;
+pub use params::IkParams;
+pub use solver::{CalibrationRound, IkSolver, Solution};

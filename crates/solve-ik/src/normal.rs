@@ -1,0 +1,338 @@
+//! The normal equations of one frame, and their solution along the tree.
+//!
+//! Unknowns are the coordinates of [`Skeleton::moved`](mocap_core::Skeleton::moved): a shift of the root, then a turn of each
+//! joint along the world's axes. A turn ω of joint j moves a marker at x, anywhere below j, by ω × (x − oⱼ). So
+//! the block of an ancestor i and a joint j needs the markers only through Σw, Σw x and Σw x xᵀ over those below j,
+//! which add up along the tree like masses and inertias of a chain of bodies: assembling costs the number of
+//! joints times their depth, whatever the number of markers. Blocks of joints on different branches are zero, and
+//! elimination from the leaves to the root keeps them so.
+
+use mocap_core::geometry::{add, cross, dot, scale, sub, times};
+
+use crate::tree::{Placed, Tree};
+
+type Matrix = [[f64; 3]; 3];
+const ZERO: Matrix = [[0.0; 3]; 3];
+
+/// Markers below a joint, added up. Places are relative to the root, whose size keeps digits.
+#[derive(Debug, Clone, Copy)]
+struct Moments {
+    weight: f64,
+    first: [f64; 3],
+    /// xx, xy, xz, yy, yz, zz.
+    second: [f64; 6],
+    force: [f64; 3],
+    torque: [f64; 3],
+}
+
+const NO_MOMENTS: Moments =
+    Moments { weight: 0.0, first: [0.0; 3], second: [0.0; 6], force: [0.0; 3], torque: [0.0; 3] };
+
+/// Markers that follow a joint by a share: what its own blocks need on top. The arm v is that share of the way from
+/// the joint to the marker.
+#[derive(Debug, Clone, Copy)]
+struct Shared {
+    arm: [f64; 3],
+    /// Σ w x vᵀ.
+    mixed: Matrix,
+    /// Σ w v vᵀ.
+    own: Matrix,
+    torque: [f64; 3],
+}
+
+const NOTHING_SHARED: Shared = Shared { arm: [0.0; 3], mixed: ZERO, own: ZERO, torque: [0.0; 3] };
+
+/// Symmetric blocks along the tree, and a right-hand side. Row 0 is the root's shift, row j + 1 the turn of joint j.
+#[derive(Debug, Clone)]
+pub(crate) struct Normal {
+    /// For each row, itself and then its ancestors up to row 0.
+    chains: Vec<Vec<usize>>,
+    /// First block of each row; block k of a row couples it to entry k of its chain.
+    starts: Vec<usize>,
+    blocks: Vec<Matrix>,
+    factor: Vec<Matrix>,
+    pub(crate) gradient: Vec<[f64; 3]>,
+    moments: Vec<Moments>,
+    shared: Vec<Shared>,
+    origin: [f64; 3],
+}
+
+/// A matrix that is not positive definite, also by NaN.
+#[derive(Debug)]
+pub(crate) struct Indefinite;
+
+impl Normal {
+    pub(crate) fn new(tree: &Tree) -> Self {
+        let mut chains = vec![vec![0]];
+        for (j, &parent) in tree.parents.iter().enumerate() {
+            let above = if j == 0 { 0 } else { parent + 1 };
+            let chain = std::iter::once(j + 1).chain(chains[above].iter().copied()).collect();
+            chains.push(chain);
+        }
+        let mut starts = Vec::with_capacity(chains.len());
+        let mut count = 0;
+        for chain in &chains {
+            starts.push(count);
+            count += chain.len();
+        }
+        Self {
+            blocks: vec![ZERO; count],
+            factor: vec![ZERO; count],
+            gradient: vec![[0.0; 3]; chains.len()],
+            moments: vec![NO_MOMENTS; chains.len()],
+            shared: vec![NOTHING_SHARED; chains.len()],
+            origin: [0.0; 3],
+            chains,
+            starts,
+        }
+    }
+
+    /// Rows: one more than joints.
+    pub(crate) fn rows(&self) -> usize {
+        self.chains.len()
+    }
+
+    /// The row and its ancestors, row 0 last.
+    pub(crate) fn chain(&self, row: usize) -> &[usize] {
+        &self.chains[row]
+    }
+
+    /// Starts anew, with places counted from `origin`.
+    pub(crate) fn clear(&mut self, origin: [f64; 3]) {
+        self.moments.fill(NO_MOMENTS);
+        self.shared.fill(NOTHING_SHARED);
+        self.origin = origin;
+    }
+
+    /// Adds a marker that rides on a joint: where it is, and by how much it misses its target.
+    #[inline]
+    pub(crate) fn add(&mut self, joint: usize, weight: f64, at: [f64; 3], miss: [f64; 3]) {
+        let p = sub(at, self.origin);
+        let wp = scale(weight, p);
+        let pull = scale(weight, miss);
+        let m = &mut self.moments[joint + 1];
+        m.weight += weight;
+        m.first = add(m.first, wp);
+        let [x, y, z] = p;
+        for (sum, term) in m.second.iter_mut().zip([
+            wp[0] * x,
+            wp[0] * y,
+            wp[0] * z,
+            wp[1] * y,
+            wp[1] * z,
+            wp[2] * z,
+        ]) {
+            *sum += term;
+        }
+        m.force = add(m.force, pull);
+        m.torque = add(m.torque, cross(p, pull));
+    }
+
+    /// Adds what such a marker means to a second joint, from which it lies by `arm` times its share.
+    #[inline]
+    pub(crate) fn add_shared(
+        &mut self,
+        joint: usize,
+        weight: f64,
+        at: [f64; 3],
+        arm: [f64; 3],
+        miss: [f64; 3],
+    ) {
+        let p = sub(at, self.origin);
+        let s = &mut self.shared[joint + 1];
+        let wv = scale(weight, arm);
+        s.arm = add(s.arm, wv);
+        for r in 0..3 {
+            s.mixed[r] = add(s.mixed[r], scale(p[r], wv));
+            s.own[r] = add(s.own[r], scale(arm[r], wv));
+        }
+        s.torque = add(s.torque, cross(wv, miss));
+    }
+
+    /// Sums up along the tree and writes the blocks and the gradient.
+    pub(crate) fn assemble(&mut self, placed: &[Placed]) {
+        for row in (1..self.rows()).rev() {
+            let below = self.moments[row];
+            let above = &mut self.moments[self.chains[row][1]];
+            above.weight += below.weight;
+            above.first = add(above.first, below.first);
+            for (sum, term) in above.second.iter_mut().zip(below.second) {
+                *sum += term;
+            }
+            above.force = add(above.force, below.force);
+            above.torque = add(above.torque, below.torque);
+        }
+        let w = self.moments[0].weight;
+        self.blocks[0] = [[w, 0.0, 0.0], [0.0, w, 0.0], [0.0, 0.0, w]];
+        self.gradient[0] = self.moments[0].force;
+        for row in 1..self.rows() {
+            self.assemble_row(row, placed);
+        }
+    }
+
+    fn assemble_row(&mut self, row: usize, placed: &[Placed]) {
+        let m = self.moments[row];
+        let shared = self.shared[row];
+        let here = sub(placed[row - 1].origin, self.origin);
+        self.gradient[row] = add(sub(m.torque, cross(here, m.force)), shared.torque);
+        // Σ w (x − o) over the markers below, as the translation sees it.
+        let arm = sub(m.first, scale(m.weight, here));
+        let start = self.starts[row];
+        let chain = &self.chains[row];
+        let last = chain.len() - 1;
+        for (at, &other) in chain[..last].iter().enumerate() {
+            let there = sub(placed[other - 1].origin, self.origin);
+            // Σ w (x − oᵢ)(x − oⱼ)ᵀ, and the same for the shared markers.
+            let [xx, xy, xz, yy, yz, zz] = m.second;
+            let second = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
+            let mut outer: Matrix = std::array::from_fn(|r| {
+                std::array::from_fn(|c| second[r][c] - there[r] * arm[c] - m.first[r] * here[c])
+            });
+            for r in 0..3 {
+                for c in 0..3 {
+                    outer[r][c] += if at == 0 {
+                        shared.own[r][c]
+                    } else {
+                        shared.mixed[r][c] - there[r] * shared.arm[c]
+                    };
+                }
+            }
+            let trace = outer[0][0] + outer[1][1] + outer[2][2];
+            // [u]ᵀ[v] = (u·v) 1 − v uᵀ with u the arm of this row and v that of the other.
+            self.blocks[start + at] = std::array::from_fn(|r| {
+                std::array::from_fn(|c| if r == c { trace - outer[r][c] } else { -outer[r][c] })
+            });
+        }
+        let [x, y, z] = add(arm, shared.arm);
+        self.blocks[start + last] = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]];
+    }
+
+    /// Adds a term of one row alone: its part of the matrix and of the gradient.
+    #[inline]
+    pub(crate) fn add_own(&mut self, row: usize, block: &Matrix, gradient: [f64; 3]) {
+        let at = &mut self.blocks[self.starts[row]];
+        for (sums, terms) in at.iter_mut().zip(block) {
+            *sums = add(*sums, *terms);
+        }
+        self.gradient[row] = add(self.gradient[row], gradient);
+    }
+
+    /// Factors the matrix with its diagonal raised by a share.
+    pub(crate) fn factor(&mut self, damping: f64) -> Result<(), Indefinite> {
+        self.factor.copy_from_slice(&self.blocks);
+        for row in 0..self.rows() {
+            let block = &mut self.factor[self.starts[row]];
+            for (a, entries) in block.iter_mut().enumerate() {
+                entries[a] *= 1.0 + damping;
+            }
+        }
+        for row in (0..self.rows()).rev() {
+            let start = self.starts[row];
+            let chain = &self.chains[row];
+            let l = cholesky(&self.factor[start])?;
+            self.factor[start] = l;
+            for at in 1..chain.len() {
+                lower_solve_columns(&l, &mut self.factor[start + at]);
+            }
+            for a in 1..chain.len() {
+                let ca = self.factor[start + a];
+                let target = self.starts[chain[a]];
+                for b in a..chain.len() {
+                    let cb = self.factor[start + b];
+                    let sum = &mut self.factor[target + b - a];
+                    for r in 0..3 {
+                        for c in 0..3 {
+                            sum[r][c] -=
+                                ca[0][r] * cb[0][c] + ca[1][r] * cb[1][c] + ca[2][r] * cb[2][c];
+                        }
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The first half of a solution, in place: the inner product of two of them is that of the inverse matrix.
+    pub(crate) fn half_solve(&self, x: &mut [[f64; 3]]) {
+        for row in (0..self.rows()).rev() {
+            let start = self.starts[row];
+            let y = lower_solve(&self.factor[start], x[row]);
+            x[row] = y;
+            for (at, &other) in self.chains[row].iter().enumerate().skip(1) {
+                let c = &self.factor[start + at];
+                for a in 0..3 {
+                    x[other][a] -= c[0][a] * y[0] + c[1][a] * y[1] + c[2][a] * y[2];
+                }
+            }
+        }
+    }
+
+    /// Solves with the factored matrix, in place.
+    pub(crate) fn solve(&self, x: &mut [[f64; 3]]) {
+        self.half_solve(x);
+        for row in 0..self.rows() {
+            let start = self.starts[row];
+            let mut y = x[row];
+            for (at, &other) in self.chains[row].iter().enumerate().skip(1) {
+                y = sub(y, times(&self.factor[start + at], x[other]));
+            }
+            x[row] = upper_solve(&self.factor[start], y);
+        }
+    }
+
+    /// The matrix `(3 · rows, 3 · rows)` in full, for tests.
+    #[cfg(test)]
+    pub(crate) fn dense(&self) -> Vec<Vec<f64>> {
+        let n = 3 * self.rows();
+        let mut full = vec![vec![0.0; n]; n];
+        for row in 0..self.rows() {
+            for (at, &other) in self.chains[row].iter().enumerate() {
+                for r in 0..3 {
+                    for c in 0..3 {
+                        let value = self.blocks[self.starts[row] + at][r][c];
+                        full[3 * row + r][3 * other + c] = value;
+                        full[3 * other + c][3 * row + r] = value;
+                    }
+                }
+            }
+        }
+        full
+    }
+}
+
+fn cholesky(a: &Matrix) -> Result<Matrix, Indefinite> {
+    let root = |x: f64| if x > 0.0 && x.is_finite() { Ok(x.sqrt()) } else { Err(Indefinite) };
+    let l00 = root(a[0][0])?;
+    let (l10, l20) = (a[1][0] / l00, a[2][0] / l00);
+    let l11 = root(a[1][1] - l10 * l10)?;
+    let l21 = (a[2][1] - l20 * l10) / l11;
+    let l22 = root(a[2][2] - l20 * l20 - l21 * l21)?;
+    Ok([[l00, 0.0, 0.0], [l10, l11, 0.0], [l20, l21, l22]])
+}
+
+#[inline]
+fn lower_solve(l: &Matrix, b: [f64; 3]) -> [f64; 3] {
+    let x = b[0] / l[0][0];
+    let y = (b[1] - l[1][0] * x) / l[1][1];
+    [x, y, (b[2] - l[2][0] * x - l[2][1] * y) / l[2][2]]
+}
+
+#[inline]
+fn lower_solve_columns(l: &Matrix, b: &mut Matrix) {
+    for c in 0..3 {
+        let [x, y, z] = lower_solve(l, [b[0][c], b[1][c], b[2][c]]);
+        (b[0][c], b[1][c], b[2][c]) = (x, y, z);
+    }
+}
+
+#[inline]
+fn upper_solve(l: &Matrix, b: [f64; 3]) -> [f64; 3] {
+    let z = b[2] / l[2][2];
+    let y = (b[1] - l[2][1] * z) / l[1][1];
+    [(b[0] - l[1][0] * y - l[2][0] * z) / l[0][0], y, z]
+}
+
+/// Length of a step's largest entry.
+pub(crate) fn largest(step: &[[f64; 3]]) -> f64 {
+    step.iter().map(|s| dot(*s, *s)).fold(0.0, f64::max).sqrt()
+}

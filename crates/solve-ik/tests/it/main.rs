@@ -1,0 +1,9 @@
+//! Solves of synthetic and real takes against what is known of them.
+#![allow(clippy::unwrap_used, clippy::float_cmp, clippy::print_stdout)] // tests
+
+mod bodies;
+mod fill;
+mod real;
+mod refusals;
+mod synthetic;
+mod worn;
