@@ -115,11 +115,11 @@ impl<'a> Bridges<'a> {
 impl Guide for Bridges<'_> {
     fn ties(&self, frame: usize, before: &State, target: &mut State, turns: &mut [f64]) -> f64 {
         let mut shift = self.inertia.ties(frame, before, target, turns);
-        for joint in 0..turns.len() {
+        for (joint, weight) in turns.iter_mut().enumerate() {
             let Some(span) = self.span(joint, frame) else { continue };
             if let Some(turn) = self.turn(joint, span, frame) {
                 target.turns[joint] = turn;
-                turns[joint] = span.weight;
+                *weight = span.weight;
             }
             if joint == 0
                 && let Some(root_m) = self.root(span, frame)

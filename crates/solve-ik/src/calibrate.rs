@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 use mocap_core::{
     Skeleton, Take,
-    geometry::{add, cross, distance, dot, scale, sub, times},
+    geometry::{add, cross, distance, dot, scale, sub, times, transposed},
 };
 use rayon::prelude::*;
 
@@ -103,6 +103,9 @@ struct System {
     frames: Vec<FrameSystem>,
 }
 
+/// Lower triangle and gradient of the shared unknowns, once the pose is eliminated, and the way back to the pose.
+type Eliminated = (Vec<f64>, Vec<f64>, FrameSystem);
+
 struct FrameSystem {
     step: Vec<[f64; 3]>,
     /// Hpp⁻¹ Hps, one column of rows for each shared unknown.
@@ -164,7 +167,7 @@ impl Layout {
         damping: f64,
     ) -> Option<System> {
         let count = 3 * self.expected.len();
-        let parts: Vec<Option<(Vec<f64>, Vec<f64>, FrameSystem)>> = samples
+        let parts: Vec<Option<Eliminated>> = samples
             .par_iter()
             .map(|sample| self.eliminate(tree, sample, params, damping))
             .collect();
@@ -172,10 +175,9 @@ impl Layout {
         let mut right = vec![0.0; count];
         for (block, (expected, weight)) in self.expected.iter().enumerate() {
             let off = sub(self.value(tree, block), *expected);
-            for a in 0..3 {
-                let at = 3 * block + a;
+            for (at, off) in (3 * block..).zip(off) {
                 matrix[at * count + at] = *weight;
-                right[at] = -weight * off[a];
+                right[at] = -weight * off;
             }
         }
         let mut frames = Vec::with_capacity(samples.len());
@@ -198,7 +200,7 @@ impl Layout {
         sample: &Sample,
         params: &IkParams,
         damping: f64,
-    ) -> Option<(Vec<f64>, Vec<f64>, FrameSystem)> {
+    ) -> Option<Eliminated> {
         let count = 3 * self.expected.len();
         let free = vec![0.0; tree.len()];
         let mut solver = FrameSolver::new(tree, params);
@@ -213,8 +215,7 @@ impl Layout {
             let slopes = self.slopes(tree, &solver, anchor as usize);
             let arms = arms(tree, &solver, anchor as usize, add(at, miss));
             for (i, (block, slope)) in slopes.iter().enumerate() {
-                for a in 0..3 {
-                    let column = [slope[0][a], slope[1][a], slope[2][a]];
+                for (a, column) in transposed(slope).into_iter().enumerate() {
                     let at = 3 * block + a;
                     gradient[at] += weight * dot(column, miss);
                     columns[at][0] = add(columns[at][0], scale(weight, column));
@@ -223,13 +224,12 @@ impl Layout {
                             add(columns[at][*row], scale(weight, cross(*arm, column)));
                     }
                     for (other, slope) in &slopes[..=i] {
-                        for b in 0..3 {
+                        for (b, across) in transposed(slope).into_iter().enumerate() {
                             let (low, high) = (3 * other + b, at);
                             let (low, high) = if low <= high { (low, high) } else { (high, low) };
                             // Within one block both orders come by; the lower triangle takes one.
                             if other != block || b <= a {
-                                matrix[high * count + low] +=
-                                    weight * dot(column, [slope[0][b], slope[1][b], slope[2][b]]);
+                                matrix[high * count + low] += weight * dot(column, across);
                             }
                         }
                     }
@@ -241,7 +241,9 @@ impl Layout {
         let mut half_gradient = step.clone();
         solver.normal.half_solve(&mut half_gradient);
         let mut halves = columns.clone();
-        halves.iter_mut().for_each(|column| solver.normal.half_solve(column));
+        for column in &mut halves {
+            solver.normal.half_solve(column);
+        }
         let inner = |p: &[[f64; 3]], q: &[[f64; 3]]| -> f64 {
             p.iter().zip(q).map(|(x, y)| dot(*x, *y)).sum()
         };
@@ -252,7 +254,9 @@ impl Layout {
             }
         }
         solver.normal.solve(&mut step);
-        columns.iter_mut().for_each(|column| solver.normal.solve(column));
+        for column in &mut columns {
+            solver.normal.solve(column);
+        }
         Some((matrix, gradient, FrameSystem { step, columns }))
     }
 
@@ -264,10 +268,8 @@ impl Layout {
         let mut slopes = Vec::new();
         let mut own = near;
         if let Some((far, share)) = marker.far {
-            let blend = |p: &Matrix, q: &Matrix| -> Matrix {
-                std::array::from_fn(|r| add(p[r], scale(share, sub(q[r], p[r]))))
-            };
-            own = blend(&near, &placed[far].axes);
+            let pulled = placed[far].axes;
+            own = std::array::from_fn(|r| add(near[r], scale(share, sub(pulled[r], near[r]))));
             if let Some(block) = self.offsets[far] {
                 slopes.push((block, std::array::from_fn(|r| sub(near[r], own[r]))));
             }

@@ -52,7 +52,7 @@ mod tests {
             // Condition of some hundreds times a rounding.
             assert!((x - y).abs() < 1e-12);
         }
-        assert!(!solve(&mut vec![-1.0], &mut [1.0]));
-        assert!(!solve(&mut vec![f64::NAN], &mut [1.0]));
+        assert!(!solve(&mut [-1.0], &mut [1.0]));
+        assert!(!solve(&mut [f64::NAN], &mut [1.0]));
     }
 }

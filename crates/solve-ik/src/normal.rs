@@ -188,14 +188,13 @@ impl Normal {
             let mut outer: Matrix = std::array::from_fn(|r| {
                 std::array::from_fn(|c| second[r][c] - there[r] * arm[c] - m.first[r] * here[c])
             });
-            for r in 0..3 {
-                for c in 0..3 {
-                    outer[r][c] += if at == 0 {
-                        shared.own[r][c]
-                    } else {
-                        shared.mixed[r][c] - there[r] * shared.arm[c]
-                    };
-                }
+            for (r, sums) in outer.iter_mut().enumerate() {
+                let term = if at == 0 {
+                    shared.own[r]
+                } else {
+                    sub(shared.mixed[r], scale(there[r], shared.arm))
+                };
+                *sums = add(*sums, term);
             }
             let trace = outer[0][0] + outer[1][1] + outer[2][2];
             // [u]ᵀ[v] = (u·v) 1 − v uᵀ with u the arm of this row and v that of the other.
@@ -319,9 +318,9 @@ fn lower_solve(l: &Matrix, b: [f64; 3]) -> [f64; 3] {
 
 #[inline]
 fn lower_solve_columns(l: &Matrix, b: &mut Matrix) {
-    for c in 0..3 {
-        let [x, y, z] = lower_solve(l, [b[0][c], b[1][c], b[2][c]]);
-        (b[0][c], b[1][c], b[2][c]) = (x, y, z);
+    let [first, second, third] = b;
+    for ((x, y), z) in first.iter_mut().zip(second).zip(third) {
+        [*x, *y, *z] = lower_solve(l, [*x, *y, *z]);
     }
 }
 

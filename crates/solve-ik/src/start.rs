@@ -54,10 +54,8 @@ fn root_fit(tree: &Tree, seen: &[Seen]) -> State {
     let pairs: Vec<([f64; 3], [f64; 3])> = on_root.collect();
     let mut state = tree.rest();
     let share = 1.0 / pairs.len().max(1) as f64;
-    let mean = |pick: fn(&([f64; 3], [f64; 3])) -> [f64; 3]| {
-        scale(share, pairs.iter().map(pick).fold([0.0; 3], add))
-    };
-    let (from, to) = (mean(|p| p.0), mean(|p| p.1));
+    let sum = pairs.iter().fold(([0.0; 3], [0.0; 3]), |s, p| (add(s.0, p.0), add(s.1, p.1)));
+    let (from, to) = (scale(share, sum.0), scale(share, sum.1));
     let mut sums = [[0.0; 3]; 3];
     for (p, q) in &pairs {
         let (p, q) = (sub(*p, from), sub(*q, to));

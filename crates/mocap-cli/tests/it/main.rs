@@ -6,6 +6,7 @@ mod contract;
 mod detect;
 mod real;
 mod safety;
+mod solve;
 
 use std::{
     path::{Path, PathBuf},

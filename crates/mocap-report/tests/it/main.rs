@@ -3,6 +3,7 @@
 
 mod figure;
 mod html;
+mod motion;
 mod properties;
 mod summary;
 mod table;

@@ -71,7 +71,7 @@ impl Reader {
                 self.habits[joint].limits = limits;
             }
             ["marker", name, joint, x, y, z, words @ ..] => {
-                self.marker(name, joint, &[x, y, z], words)?
+                self.marker(name, joint, &[x, y, z], words)?;
             }
             ["alias", name, others @ ..] if !others.is_empty() => {
                 if !self.sites.iter().any(|site| site.marker == *name) {

@@ -53,11 +53,8 @@ fn a_hidden_forearm_stays_on_its_elbow() {
 fn a_marker_that_the_map_does_not_know_rides_along() {
     let recorded = record(Activity::Walk, 300, 9);
     let body = synthetic_body().to_string();
-    let without: String = body
-        .lines()
-        .filter(|line| !line.starts_with("marker LSHN"))
-        .map(|l| format!("{l}\n"))
-        .collect();
+    let without: String =
+        body.split_inclusive('\n').filter(|line| !line.starts_with("marker LSHN")).collect();
     let filler =
         IkFiller::new(vec![Body::parse(&without, "x").unwrap()], IkParams::default()).unwrap();
     let take = recorded.take();

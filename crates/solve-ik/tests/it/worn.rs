@@ -36,9 +36,11 @@ pub fn synthetic_body() -> Body {
     for joint in joints {
         let [x, y, z] = joint.offset_m;
         match joint.parent {
-            None => writeln!(text, "joint {}", joint.name).unwrap(),
+            None => {
+                writeln!(text, "joint {}", joint.name).unwrap();
+            }
             Some(p) => {
-                writeln!(text, "joint {} {} {x} {y} {z}", joint.name, joints[p].name).unwrap()
+                writeln!(text, "joint {} {} {x} {y} {z}", joint.name, joints[p].name).unwrap();
             }
         }
         let spread = SPREADS.iter().find(|(part, _)| joint.name.contains(part)).unwrap().1;

@@ -1,6 +1,9 @@
 use std::fmt::Write;
 
-use mocap_core::{Skeleton, geometry::norm};
+use mocap_core::{
+    Skeleton,
+    geometry::{distance, norm},
+};
 
 use crate::{LengthUnit, text::names};
 
@@ -102,7 +105,7 @@ pub(in crate::text) fn bones(skeleton: &Skeleton) -> Vec<Bone> {
         }
         let mut parent = joint.parent.map(|p| bone_of[p]);
         if let Some(p) = parent
-            && bones[p].vector_m != joint.offset_m
+            && !is_one_place(bones[p].vector_m, joint.offset_m)
         {
             let name = format!("to_{}", joint.name);
             bones.push(Bone { name, joint: None, parent, vector_m: joint.offset_m });
@@ -111,12 +114,18 @@ pub(in crate::text) fn bones(skeleton: &Skeleton) -> Vec<Bone> {
         // The bone reaches as far as all its children agree on.
         let mut starts = children[index].iter().map(|&c| joints[c].offset_m);
         let first = starts.next().filter(|_| index > 0);
-        let vector_m = first.filter(|first| starts.all(|s| s == *first)).unwrap_or([0.0; 3]);
+        let vector_m =
+            first.filter(|first| starts.all(|s| is_one_place(s, *first))).unwrap_or([0.0; 3]);
         bone_of[index] = bones.len();
         bones.push(Bone { name: joint.name.clone(), joint: Some(index), parent, vector_m });
     }
     name(&mut bones);
     bones
+}
+
+/// Whether two places are the same to the last bit.
+fn is_one_place(p: [f64; 3], q: [f64; 3]) -> bool {
+    distance(p, q) <= 0.0
 }
 
 /// Gives each bone a name that both files of the format can hold.

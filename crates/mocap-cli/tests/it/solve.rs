@@ -1,0 +1,65 @@
+//! `mocap solve`: markers in, motion out.
+
+use mocap_io::{MotionFile, ReadOptions};
+
+use crate::{Bench, exists};
+
+#[test]
+fn a_gappy_walk_becomes_motion_in_every_format() {
+    let bench = Bench::with_gap("c3d");
+    let report = bench.json(
+        "solve gap.c3d -o walk.bvh --json --plot still.svg --animate film.svg --markers clean.trc \
+         --save-body me.body --threads 1",
+    );
+    assert_eq!(report["frames"], 200);
+    assert!(report["mean_residual_mm"].as_f64().unwrap() < 8.0, "{report}");
+    let clean = bench.json("inspect clean.trc --json");
+    assert_eq!(clean["gaps"].as_array().map(Vec::len), Some(0), "{clean}");
+    for (name, word) in [("still.svg", "<polyline"), ("film.svg", "<animate ")] {
+        let svg = String::from_utf8(bench.read(name)).unwrap();
+        assert!(svg.contains(word), "{name}");
+    }
+    // The kept body fits as it is, and the same bits come out on two threads.
+    let kept = bench.json("solve gap.c3d -o kept.amc --json --skeleton me.body --no-calibration");
+    assert!(kept["mean_residual_mm"].as_f64().unwrap() < 8.0, "{kept}");
+    bench.ok("solve gap.c3d -o again.bvh --threads 2");
+    assert_eq!(bench.read("walk.bvh"), bench.read("again.bvh"));
+    let read = |name: &str| {
+        let file = MotionFile::read(&bench.path(name), None, &ReadOptions::default()).unwrap();
+        let motion = file.motion();
+        (0..200)
+            .map(|t| motion.skeleton().positions(&motion.poses()[t]).unwrap()[0])
+            .collect::<Vec<_>>()
+    };
+    let (bvh, amc) = (read("walk.bvh"), read("kept.amc"));
+    for (a, b) in bvh.iter().zip(&amc) {
+        // y is up: a walker's pelvis stays at its height. The two calibrations differ by a little.
+        assert!((0.7..1.2).contains(&a[1]), "{a:?}");
+        assert!((0..3).all(|c| (a[c] - b[c]).abs() < 0.03), "{a:?} {b:?}");
+    }
+    bench.ok("solve gap.c3d -o known.json --skeleton kept.asf");
+    let json: serde_json::Value = serde_json::from_slice(&bench.read("known.json")).unwrap();
+    assert_eq!(json["frames"].as_array().map(Vec::len), Some(200));
+    assert_eq!(json["frames"][0]["rotations"][0].as_array().map(Vec::len), Some(4));
+}
+
+#[test]
+fn what_cannot_be_solved_is_refused_before_anything_is_written() {
+    let bench = Bench::with_gap("csv");
+    for (line, words) in [
+        ("solve gap.csv -o out.c3d", ".bvh, .amc, .asf or .json"),
+        ("solve gap.csv -o out.bvh --skeleton nobody.body", "cannot read the body nobody.body"),
+        ("solve gap.csv -o out.bvh --skeleton walk.csv", "holds markers"),
+        ("solve gap.csv -o out.bvh --markers m.bvh", "markers go into"),
+        ("solve gap.csv -o out.bvh --animate film.png", "an animation is an .svg file"),
+        ("solve gap.csv -o out.bvh --threads 0", "at least 1"),
+        ("solve gap.csv -o gap.csv", "is an input"),
+    ] {
+        let error = bench.fails(line);
+        assert!(error.contains(words), "{line}: {error}");
+        assert!(!exists(&bench.path("out.bvh")), "{line}");
+    }
+    std::fs::write(bench.path("dots.csv"), "a-x,a-y,a-z\n1,2,3\n2,3,4\n").unwrap();
+    let error = bench.fails("solve dots.csv -o out.bvh");
+    assert!(error.contains("cannot solve dots.csv") && error.contains("LFWT"), "{error}");
+}
