@@ -16,7 +16,7 @@ mod style;
 pub(crate) use axes::Axis;
 pub(crate) use bars::Bars;
 pub(crate) use chart::{Chart, Line, Points};
-pub(crate) use dots::Dots;
+pub(crate) use dots::{Dots, Value};
 pub(crate) use panels::{Panel, Panels};
 pub(crate) use still::Still;
 pub(crate) use style::{Shape, Style, colours};

@@ -1,21 +1,20 @@
-use mocap_report::{Entry, draw::Pen};
+use mocap_report::Entry;
 
 use crate::{
-    Finished, Reference, Report, Row, Section, Stats, Sureness,
+    Finished, Reference, Report, Row, Section, Stats,
     bolero::Legend,
-    compare,
-    figure::{Axis, Chart, Content, Dots, Figure, Key, Line, Mark, Panel, Panels, Points},
+    calibration, compare,
+    figure::{Content, Dots, Figure, Value},
     reference,
     report::{STATS_NOTE, stats_table},
     summarise,
-    summary::group,
-    sureness::{LENGTH_EDGES_S, MULTIPLES, length_class},
+    sureness::{LENGTH_EDGES_S, length_class},
 };
 
 /// The set of trials whose gaps are of many lengths, so that its rows are told apart by length.
 const MIXED: &str = "realistic";
-/// Class of a calibration over gaps of all lengths, and set of one over all protocols.
-const ALL: &str = "all";
+/// The method that chooses among the others.
+const AUTO: &str = "auto";
 
 /// The leader board from finished cells.
 #[must_use]
@@ -54,15 +53,16 @@ pub fn leaderboard_report(cells: &[Finished<'_>]) -> Report {
         .into_iter()
         .map(|(id, title, note, pick)| overview(&rows, id, title, note, pick))
         .collect();
-    let sure = calibration(cells);
-    sections.push(calibration_table(&sure));
+    sections.insert(0, ranking(&rows));
+    let sure = calibration::by_method(cells);
+    sections.push(calibration::table(&sure));
     sections.push(reference::table(&compared));
     sections.retain(|section| !section.table.is_empty());
     let all: Vec<&Row> = rows.iter().collect();
     sections.push(stats_table("leaderboard", "Every figure", STATS_NOTE, &all));
     let mut figures: Vec<Figure> =
         sets(&rows).into_iter().map(|set| dots(&rows, set, &legend)).collect();
-    figures.extend(reliability(&sure, &legend));
+    figures.extend(calibration::figure(&sure, &legend));
     Report {
         title: "Leader board of the gap-filling methods".to_owned(),
         intro: vec![
@@ -131,9 +131,52 @@ fn mm_mean(stats: &Stats) -> Option<f64> {
     stats.mm_mean
 }
 
-fn value(rows: &[Row], set: &str, class: &str, method: &str, pick: Pick) -> Option<f64> {
+fn stats<'a>(rows: &'a [Row], set: &str, class: &str, method: &str) -> Option<&'a Stats> {
     let is_it = |row: &&Row| row.set == set && row.class == class && row.method == method;
-    pick(&rows.iter().find(is_it)?.stats)
+    rows.iter().find(is_it).map(|row| &row.stats)
+}
+
+/// Every protocol with its classes.
+fn places(rows: &[Row]) -> Vec<(&str, &str)> {
+    let mut places = Vec::new();
+    for set in sets(rows) {
+        for row in rows.iter().filter(|row| row.set == set) {
+            if !places.contains(&(set, row.class.as_str())) {
+                places.push((set, row.class.as_str()));
+            }
+        }
+    }
+    places
+}
+
+/// The three best of those that filled everything, and `auto` by the best.
+fn ranking(rows: &[Row]) -> Section {
+    let row = |(set, class): (&str, &str)| {
+        let of_place = rows.iter().filter(|row| row.set == set && row.class == class);
+        let mut ranked: Vec<(f64, &str)> = of_place
+            .filter(|row| row.stats.unfilled == 0)
+            .filter_map(|row| Some((row.stats.mm_mean?, row.method.as_str())))
+            .collect();
+        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut line = vec![Entry::text(set), Entry::text(class)];
+        for place in 0..3 {
+            let entry = ranked.get(place);
+            line.push(entry.map_or(Entry::Empty, |(_, method)| Entry::text(method)));
+            line.push(Entry::number(entry.map(|(mm, _)| *mm), 1));
+        }
+        let auto = ranked.iter().find(|(_, method)| *method == AUTO);
+        let ratio = auto.zip(ranked.first()).map(|(auto, best)| auto.0 / best.0);
+        line.push(Entry::number(ratio, 2));
+        line
+    };
+    Section::new(
+        "ranking",
+        "The best by protocol and gap",
+        "Mean over trials of a trial's mean error in mm, of the methods that filled every sample. The \
+         last column is `auto` by the best: 1 where it is the best itself.",
+        &["protocol", "gap", "best", "mm", "second", "mm", "third", "mm", "auto by best"],
+        places(rows).into_iter().map(row),
+    )
 }
 
 /// Methods by protocol and gap: one statistic.
@@ -141,30 +184,39 @@ fn overview(rows: &[Row], id: &str, title: &str, what: &str, pick: Pick) -> Sect
     let methods = distinct(rows, |row| &row.method);
     let mut columns = vec!["protocol", "gap"];
     columns.extend(&methods);
-    let unit = if id == "seconds" { "" } else { ", in mm" };
-    let decimals = if id == "seconds" { 3 } else { 1 };
+    let is_time = id == "seconds";
+    let unit = if is_time { "" } else { ", in mm" };
     let note = format!(
-        "{what}{unit}. An en dash: nothing was filled; the full table says how many samples each method \
-         left open, and on how many trials the row rests."
+        "{what}{unit}. In brackets the share of the hidden samples that was filled, where it is not all: \
+         such a figure leaves out what the method found too hard, and is not to be compared. An en \
+         dash: nothing was filled."
     );
-    let mut lines = Vec::new();
-    for set in sets(rows) {
-        let own: Vec<Row> = rows.iter().filter(|row| row.set == set).cloned().collect();
-        for class in distinct(&own, |row| &row.class) {
-            let mut row = vec![Entry::text(set), Entry::text(class)];
-            let of = |method: &&str| Entry::number(value(rows, set, class, method, pick), decimals);
-            row.extend(methods.iter().map(of));
-            lines.push(row);
-        }
-    }
-    Section::new(id, title, &note, &columns, lines)
+    let row = |(set, class): (&str, &str)| {
+        let mut line = vec![Entry::text(set), Entry::text(class)];
+        let entry = |method: &&str| {
+            let stats = stats(rows, set, class, method)?;
+            let value = pick(stats)?;
+            let share = 100.0 * (stats.hidden - stats.unfilled) as f64 / stats.hidden.max(1) as f64;
+            Some(match (is_time, stats.unfilled) {
+                (true, _) => Entry::number(Some(value), 3),
+                (false, 0) => Entry::number(Some(value), 1),
+                (false, _) => Entry::text(format!("{value:.1} ({:.0} %)", share.floor())),
+            })
+        };
+        line.extend(methods.iter().map(|method| entry(method).unwrap_or(Entry::Empty)));
+        line
+    };
+    Section::new(id, title, &note, &columns, places(rows).into_iter().map(row))
 }
 
 fn dots(rows: &[Row], set: &str, legend: &Legend<'_>) -> Figure {
     let own: Vec<Row> = rows.iter().filter(|row| row.set == set).cloned().collect();
     let classes = distinct(&own, |row| &row.class);
     let series = distinct(&own, |row| &row.method).into_iter().map(|method| {
-        let means = classes.iter().map(|class| value(rows, set, class, method, mm_mean));
+        let means = classes.iter().map(|class| {
+            let stats = stats(rows, set, class, method)?;
+            Some(Value { value: stats.mm_mean?, is_whole: stats.unfilled == 0 })
+        });
         (method.to_owned(), legend.style(method), means.collect())
     });
     Figure {
@@ -180,137 +232,4 @@ fn dots(rows: &[Row], set: &str, legend: &Legend<'_>) -> Figure {
             rows: classes.into_iter().map(str::to_owned).collect(),
         }),
     }
-}
-
-/// What became of a method's sigmas in one protocol, or in all, and in one class of lengths, or in all.
-struct Sure<'a> {
-    set: &'a str,
-    class: String,
-    method: &'a str,
-    counts: Sureness,
-}
-
-fn calibration<'a>(cells: &'a [Finished<'_>]) -> Vec<Sure<'a>> {
-    let mut sure = Vec::new();
-    let mut add = |set, class, method, parts: Vec<&Sureness>| {
-        let counts = Sureness::sum(parts);
-        if counts.samples > 0 {
-            sure.push(Sure { set, class, method, counts });
-        }
-    };
-    for (method, own) in group(cells, |cell| cell.variant.label()) {
-        let of_class = |own: &[&'a Finished<'_>], class: Option<usize>| -> Vec<&'a Sureness> {
-            own.iter()
-                .flat_map(|cell| &cell.outcome.by_length)
-                .filter(|length| class.is_none_or(|class| length.class == class))
-                .map(|length| &length.sureness)
-                .collect()
-        };
-        add(ALL, ALL.to_owned(), method, of_class(&own, None));
-        for class in 0..=LENGTH_EDGES_S.len() {
-            add(ALL, length_class(class), method, of_class(&own, Some(class)));
-        }
-        let cells: Vec<Finished<'_>> = own.iter().map(|cell| (*cell).clone()).collect();
-        for set in group(&cells, |cell| cell.trial.set.clone()).into_iter().map(|(set, _)| set) {
-            let of_set: Vec<&Finished<'_>> =
-                own.iter().copied().filter(|cell| cell.trial.set == set).collect();
-            let set = of_set[0].trial.set.as_str();
-            add(set, ALL.to_owned(), method, of_class(&of_set, None));
-        }
-    }
-    sure
-}
-
-fn calibration_table(sure: &[Sure<'_>]) -> Section {
-    let percent = |share: Option<f64>| Entry::number(share.map(|share| 100.0 * share), 1);
-    let row = |sure: &Sure<'_>| {
-        vec![
-            Entry::text(sure.method),
-            Entry::text(sure.set),
-            Entry::text(&sure.class),
-            Entry::count(sure.counts.samples),
-            percent(sure.counts.share_within(1.0)),
-            percent(sure.counts.share_within(2.0)),
-            Entry::number(sure.counts.rms_ratio(), 2),
-        ]
-    };
-    Section::new(
-        "calibration",
-        "Calibration: errors beside the sigma that a method states",
-        "Share of the filled samples whose 3-D error is at most 1 and 2 sigma; 68 and 95 % is honest. `rms \
-         error by sigma`: 1 is honest, above 1 sigma is too small. Methods without sigma are left out.",
-        &[
-            "method",
-            "protocol",
-            "gaps",
-            "samples",
-            "within 1 sigma %",
-            "within 2 sigma %",
-            "rms error by sigma",
-        ],
-        sure.iter().map(row),
-    )
-}
-
-/// Share of samples within multiples of sigma, over that of a normal law.
-fn reliability(sure: &[Sure<'_>], legend: &Legend<'_>) -> Option<Figure> {
-    let overall: Vec<&Sure<'_>> = sure.iter().filter(|sure| sure.set == ALL).collect();
-    let mut classes: Vec<&str> = Vec::new();
-    let order = std::iter::once(ALL.to_owned()).chain((0..=LENGTH_EDGES_S.len()).map(length_class));
-    for class in order {
-        classes.extend(overall.iter().find(|s| s.class == class).map(|s| s.class.as_str()));
-    }
-    let nominal = metrics::Calibration::nominal_share;
-    let curve = |sure: &Sure<'_>| -> Vec<(f64, f64)> {
-        let points =
-            MULTIPLES.map(|m| sure.counts.share_within(m).map(|share| (nominal(m), share)));
-        std::iter::once((0.0, 0.0)).chain(points.into_iter().flatten()).collect()
-    };
-    let chart = |class: &&str| {
-        let own: Vec<&&Sure<'_>> = overall.iter().filter(|sure| sure.class == **class).collect();
-        let line = |sure: &&&Sure<'_>| Line {
-            points: curve(sure),
-            pen: Pen::solid(legend.style(sure.method).colour, 1.8),
-        };
-        let points = |sure: &&&Sure<'_>| Points {
-            at: [1.0, 2.0]
-                .into_iter()
-                .filter_map(|m| Some((nominal(m), sure.counts.share_within(m)?)))
-                .collect(),
-            style: legend.style(sure.method),
-            radius: 4.5,
-        };
-        let samples = own.iter().map(|sure| sure.counts.samples).max().unwrap_or(0);
-        let heading = if **class == *ALL { "gaps of all lengths" } else { *class };
-        Panel::Chart(Box::new(Chart {
-            heading: format!("{heading} (up to {samples} samples)"),
-            x: Axis::linear(0.0, 1.0),
-            y: Axis::linear(0.0, 1.0),
-            names: Vec::new(),
-            x_label: "share that a normal law has within k sigma".to_owned(),
-            y_label: "share of samples within k sigma".to_owned(),
-            shade: None,
-            diagonal: true,
-            lines: own.iter().map(line).collect(),
-            points: own.iter().map(points).collect(),
-        }))
-    };
-    let methods = overall.iter().filter(|sure| sure.class == ALL);
-    let keys = methods.map(|sure| Key {
-        name: sure.method.to_owned(),
-        mark: Mark::Shape(legend.style(sure.method)),
-    });
-    (!classes.is_empty()).then(|| Figure {
-        id: "reliability".to_owned(),
-        title: "Reliability of the stated sigma".to_owned(),
-        caption: "On the diagonal a method is as sure as it may be; below, its sigma is too small, above, \
-                  too large. The marks are 1 and 2 sigma."
-            .to_owned(),
-        content: Content::Panels(Panels {
-            columns: 3,
-            row_height: 350.0,
-            cells: classes.iter().map(chart).collect(),
-            legend: keys.collect(),
-        }),
-    })
 }

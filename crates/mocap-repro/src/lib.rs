@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 mod bolero;
+mod calibration;
 mod cell;
 mod error;
 mod figure;

@@ -90,7 +90,7 @@ impl Axis {
 }
 
 fn log_label(value: f64) -> String {
-    if (0.09..99_999.0).contains(&value) {
+    if (0.09..9_999.0).contains(&value) {
         let digits = usize::from(value < 0.9);
         format!("{value:.digits$}")
     } else {

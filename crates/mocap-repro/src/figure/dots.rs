@@ -11,7 +11,14 @@ pub(crate) struct Dots {
     pub x_label: String,
     pub rows: Vec<String>,
     /// Name, style, and one value a row.
-    pub series: Vec<(String, Style, Vec<Option<f64>>)>,
+    pub series: Vec<(String, Style, Vec<Option<Value>>)>,
+}
+
+/// A value, and whether it is of the whole; if not, its shape is hollow.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Value {
+    pub value: f64,
+    pub is_whole: bool,
 }
 
 const ROW_HEIGHT: f64 = 27.0;
@@ -36,14 +43,14 @@ impl Dots {
         canvas: &mut Canvas<'_, DB>,
         top: f64,
     ) -> Result<(), ReportError> {
-        let values = self.series.iter().flat_map(|(_, _, values)| values.iter().copied().flatten());
+        let values = self.series.iter().flat_map(|(_, _, values)| values.iter().flatten());
         let rows = self.rows.len().max(1) as f64;
         let axes = Axes {
             left: MARGIN + NAMES,
             right: WIDTH - MARGIN - 10.0,
             top: top + 4.0,
             bottom: top + 4.0 + ROW_HEIGHT * rows,
-            x: Axis::logarithmic(values),
+            x: Axis::logarithmic(values.map(|value| value.value)),
             y: Axis::linear(0.0, rows),
         };
         axes.draw_x(canvas, 10)?;
@@ -58,8 +65,11 @@ impl Dots {
         // Those that come first stand on top.
         for (_, style, values) in self.series.iter().rev() {
             for (r, value) in values.iter().enumerate() {
-                if let Some(value) = value {
-                    style.draw(canvas, axes.at(*value, rows - r as f64 - 0.5), 5.0)?;
+                let Some(Value { value, is_whole }) = value else { continue };
+                let at = axes.at(*value, rows - r as f64 - 0.5);
+                style.draw(canvas, at, 5.0)?;
+                if !is_whole {
+                    style.hollow(canvas, at, 5.0)?;
                 }
             }
         }

@@ -66,6 +66,16 @@ impl Style {
         self.shape.draw(canvas, at, radius + 1.25, WHITE)?;
         self.shape.draw(canvas, at, radius, self.colour)
     }
+
+    /// Takes the inside out of a shape that was drawn.
+    pub(crate) fn hollow<DB: Backend>(
+        self,
+        canvas: &mut Canvas<'_, DB>,
+        at: Point,
+        radius: f64,
+    ) -> Result<(), ReportError> {
+        self.shape.draw(canvas, at, 0.5 * radius, WHITE)
+    }
 }
 
 impl Shape {

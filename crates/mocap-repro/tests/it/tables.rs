@@ -114,7 +114,11 @@ fn a_leaderboard_has_a_row_for_each_gap() {
     let cells = cells(&trials, &variants, [[1.0, 4.0, 1.0], [2.0, 1.0, -1.0]]);
     let report = leaderboard_report(&cells);
     let text = report.to_markdown();
-    assert!(text.contains("| fixtures | synthetic | 2.0 | 1.5 |"), "{text}");
+    assert!(text.contains("| fixtures | synthetic | 2.0 | 1.5 (66 %) |"), "{text}");
+    assert!(
+        text.contains("| fixtures | synthetic | linear | 2.0 | – |"),
+        "only what filled everything is ranked"
+    );
     assert_eq!(report.rows.len(), 2);
     assert_eq!((report.rows[1].stats.failed, report.rows[1].stats.unfilled), (1, 10));
 }
