@@ -35,7 +35,7 @@ enum Which {
 #[derive(Args)]
 pub struct Board {
     /// Rules by which gaps are cut: bolero-90, multi, limb, blackout, realistic; or pseudo-gaps, on which
-    /// parameters may be chosen [default: all but the last]
+    /// parameters may be chosen; or raw, recordings with gaps of their own [default: all but the last two]
     #[arg(long, value_delimiter = ',', value_name = "A,B,…")]
     protocol: Vec<String>,
     #[command(flatten)]
@@ -84,8 +84,19 @@ pub fn paper(root: &Path, paper: &Paper) -> Result<ExitCode> {
 
 /// Runs the leader board.
 pub fn leaderboard(root: &Path, board: &Board) -> Result<ExitCode> {
-    run(root, "leaderboard", &board.options, &board.protocol)
+    let is_raw = |protocol: &&String| protocol.as_str() == RAW;
+    let cut: Vec<String> = board.protocol.iter().filter(|p| !is_raw(p)).cloned().collect();
+    if !board.protocol.iter().any(|p| is_raw(&p)) {
+        return run(root, "leaderboard", &board.options, &cut);
+    }
+    if !cut.is_empty() {
+        run(root, "leaderboard", &board.options, &cut)?;
+    }
+    run(root, RAW, &board.options, &[])
 }
+
+/// The protocol that cuts no gaps; a task of its own.
+const RAW: &str = "raw";
 
 fn run(root: &Path, task: &str, options: &Options, protocols: &[String]) -> Result<ExitCode> {
     setup::ensure(options.yes)?;

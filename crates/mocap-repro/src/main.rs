@@ -15,8 +15,10 @@ use mocap_repro::{
 };
 
 mod meter;
+mod raw_task;
 
 use meter::Meter;
+use raw_task::Raw;
 
 /// Runs every gap-filling method on the same gaps, and sets the results beside the published ones.
 ///
@@ -32,6 +34,7 @@ struct Cli {
 enum Task {
     Bolero(Bolero),
     Leaderboard(Leaderboard),
+    Raw(Raw),
 }
 
 /// The evaluation of the BoLeRO paper: case studies, 90 trials twice over, sweeps, tables and figures
@@ -95,6 +98,7 @@ fn main() -> ExitCode {
     let done = match Cli::parse().task {
         Task::Bolero(task) => task.run(),
         Task::Leaderboard(task) => task.run(),
+        Task::Raw(task) => task.run(),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -4,6 +4,7 @@
 mod errors;
 mod evaluation;
 mod protocols;
+mod raw;
 mod resume;
 mod tables;
 
