@@ -1,9 +1,11 @@
 #![doc = include_str!("../README.md")]
 
+mod auto;
 mod joined;
 mod options;
 mod registry;
 
+pub use auto::{Auto, AutoParams};
 pub use baselines::Edges;
 pub use joined::{Borders, Joined};
 pub use lds_kalman::Start;

@@ -23,6 +23,9 @@ pub struct Options {
     pub seed: u64,
     /// What becomes of gaps at the start or end of the take, for methods that interpolate.
     pub edges: Edges,
+    /// Gaps that are expected to be filled with a larger error stay open, for `auto`; positive, the root mean
+    /// square over a gap in metres. `None`: all are filled.
+    pub max_error_m: Option<f64>,
     /// What becomes of the step at the borders of a gap; `None`: the method's own choice, which is to
     /// join for `lds` and `bolero-sc`.
     pub borders: Option<Borders>,
@@ -42,6 +45,7 @@ impl Default for Options {
             start: None,
             seed: 0,
             edges: Edges::default(),
+            max_error_m: None,
             borders: None,
         }
     }

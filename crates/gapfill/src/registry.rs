@@ -12,10 +12,10 @@ use locality_ridge::LocalRidge;
 use mocap_core::{BoneRule, BoneSet, FillError, GapFiller, MarkerKnowledge, MarkerSet};
 use thiserror::Error;
 
-use crate::{Bones, Borders, Coordinates, Joined, Options};
+use crate::{Auto, AutoParams, Bones, Borders, Coordinates, Joined, Options};
 
 /// The method to take where the user names none.
-pub const DEFAULT: &str = "bolero-sc";
+pub const DEFAULT: &str = "auto";
 
 /// A method of the registry.
 #[derive(Debug, Clone, Copy)]
@@ -92,6 +92,12 @@ pub const METHODS: &[Method] = &[
         build: |_| Ok(Box::new(LocalRidge::default())),
     },
     Method {
+        id: "auto",
+        summary: "the best mixture for each gap, found by trying every method on gaps with known truth; says how sure it is",
+        options: &["edges", "max-error"],
+        build: auto,
+    },
+    Method {
         id: "dynammo",
         summary: "a linear dynamical system as Li et al. published it in 2009; for comparison",
         options: &["frame", "hidden", "iterations", "start", "seed", "borders"],
@@ -161,6 +167,13 @@ fn low_rank(options: &Options) -> Result<Box<dyn GapFiller>, FillError> {
 fn components(options: &Options) -> Result<Box<dyn GapFiller>, FillError> {
     let ramp = options.borders != Some(Borders::Keep);
     Ok(Box::new(Pca::new(PcaParams { ramp, ..PcaParams::default() })?))
+}
+
+fn auto(options: &Options) -> Result<Box<dyn GapFiller>, FillError> {
+    let joined = Options { borders: None, ..options.clone() };
+    let lds = dynamical_system(LdsFillerParams::default(), Borders::Join, &joined)?;
+    let params = AutoParams { max_error_m: options.max_error_m, edges: options.edges };
+    Ok(Box::new(Auto::with_systems(params, lds, soft_bones(&joined)?)?))
 }
 
 fn dynamical_system(

@@ -41,23 +41,34 @@ impl LocalFrame {
 /// The pose of the core markers that local frames refer to.
 #[derive(Debug, Clone)]
 pub(crate) struct Reference {
-    /// Around its centre; `None` where the markers lie on a line, so that only their centre counts.
+    /// Around its centre, times its weight; `None` where the markers lie on a line, so that only their
+    /// centre counts.
     shape: Option<Vec<[f64; 3]>>,
+    /// Weights of the markers, of sum 1.
+    weights: Vec<f64>,
 }
 
 impl Reference {
     pub fn new(pose: &[[f64; 3]]) -> Self {
-        let centre = centroid(pose);
-        let shape = (!is_linear(pose)).then(|| pose.iter().map(|&p| sub(p, centre)).collect());
-        Self { shape }
+        Self::weighted(pose, &vec![1.0; pose.len()])
+    }
+
+    /// A reference in which markers count by their positive weights.
+    pub fn weighted(pose: &[[f64; 3]], weights: &[f64]) -> Self {
+        let sum: f64 = weights.iter().sum();
+        let weights: Vec<f64> = weights.iter().map(|w| w / sum).collect();
+        let centre = weighted_centre(pose, &weights);
+        let weigh = |(&p, &w): (&[f64; 3], &f64)| scale(w, sub(p, centre));
+        let shape = (!is_linear(pose)).then(|| pose.iter().zip(&weights).map(weigh).collect());
+        Self { shape, weights }
     }
 
     /// The frame of the same markers in another pose: the proper rotation and translation that take
-    /// the pose to the reference with the least sum of squares.
+    /// the pose to the reference with the least weighted sum of squares.
     ///
     /// Found as a quaternion, it is never a reflection, as the solution of [Kabsch76] can be.
     pub fn frame(&self, pose: &[[f64; 3]]) -> LocalFrame {
-        let centre = centroid(pose);
+        let centre = weighted_centre(pose, &self.weights);
         let rotation = self.shape.as_ref().map_or(Rotation::IDENTITY, |shape| {
             let mut covariance = [[0.0; 3]; 3];
             for (&p, q) in pose.iter().zip(shape) {
@@ -90,6 +101,10 @@ pub(crate) fn is_linear(points: &[[f64; 3]]) -> bool {
     values.sort_by(f64::total_cmp);
     // Squares of singular values; a NaN counts as a line.
     !(values[1] >= LINEAR * LINEAR * values[2] && values[1] > f64::MIN_POSITIVE)
+}
+
+fn weighted_centre(points: &[[f64; 3]], weights: &[f64]) -> [f64; 3] {
+    points.iter().zip(weights).fold([0.0; 3], |sum, (&p, &w)| add(sum, scale(w, p)))
 }
 
 fn centroid(points: &[[f64; 3]]) -> [f64; 3] {

@@ -10,6 +10,7 @@ use mocap_core::{
 use crate::{
     LocalRidgeParams,
     border::{Weights, weights},
+    join::join,
     neighbours::{Neighbours, rank},
     predictor::{Prediction, Predictor},
     segments::segments,
@@ -62,7 +63,8 @@ impl<'a> MarkerFiller<'a> {
             return Err(Refusal::NoNeighbour);
         }
         let mut path = Path::through(self, &span, &steps);
-        path.join(&steps, BLEND_S * self.take.rate_hz());
+        let runs = runs(&steps, &path.places);
+        join(&mut path.places, &runs, BLEND_S * self.take.rate_hz());
         let longest = BRIDGE_S * self.take.rate_hz();
         let known = |t: usize| self.take.position(t, self.marker);
         let bordered: Vec<Option<[f64; 3]>> =
@@ -138,76 +140,6 @@ impl Path {
         }
         path
     }
-
-    /// Spreads the step between two adjoining segments over the frames next to it, up to `blend`
-    /// frames on either side, so that the path goes on there as fast as it came.
-    fn join(&mut self, steps: &[Option<Step>], blend: f64) {
-        let runs = runs(steps, &self.places);
-        let joints = runs.windows(2).filter(|pair| pair[0].end == pair[1].start);
-        let shifts: Vec<(Range<usize>, Range<usize>, [f64; 3])> = joints
-            .filter_map(|pair| {
-                let excess = self.excess(&pair[0], &pair[1])?;
-                Some((pair[0].clone(), pair[1].clone(), excess))
-            })
-            .collect();
-        for (before, after, excess) in shifts {
-            // A single frame has no room to fade, and a border alone must not move.
-            let shares = match (before.len() > 1, after.len() > 1) {
-                (true, true) => [0.5, 0.5],
-                (false, true) => [0.0, 1.0],
-                (true, false) => [1.0, 0.0],
-                (false, false) => [0.0, 0.0],
-            };
-            let joint = after.start;
-            for i in before.clone() {
-                let fade = fade(joint - 1 - i, before.len() - 1, blend);
-                self.shift(i, scale(shares[0] * fade, excess));
-            }
-            for i in after.clone() {
-                let fade = fade(i - joint, after.len() - 1, blend);
-                self.shift(i, scale(-shares[1] * fade, excess));
-            }
-        }
-    }
-
-    /// The step at a joint beyond what the path moves in one frame, judged by its speed on either
-    /// side: by the cubic through two speeds before and two after, or by their mean.
-    fn excess(&self, before: &Range<usize>, after: &Range<usize>) -> Option<[f64; 3]> {
-        let change = |i: usize| Some(sub(self.places[i + 1]?, self.places[i]?));
-        let joint = after.start;
-        let near = [
-            (before.len() > 1).then(|| change(joint - 2)).flatten(),
-            (after.len() > 1).then(|| change(joint)).flatten(),
-        ];
-        let far = [
-            (before.len() > 2).then(|| change(joint - 3)).flatten(),
-            (after.len() > 2).then(|| change(joint + 1)).flatten(),
-        ];
-        let mean = |speeds: [Option<[f64; 3]>; 2]| {
-            let known = speeds.iter().flatten().count().max(1) as f64;
-            speeds.iter().flatten().fold([0.0; 3], |sum, &v| add(sum, scale(1.0 / known, v)))
-        };
-        let speed = if far.iter().all(Option::is_some) {
-            add(scale(4.0 / 3.0, mean(near)), scale(-1.0 / 3.0, mean(far)))
-        } else {
-            mean(near)
-        };
-        Some(sub(change(joint - 1)?, speed))
-    }
-
-    fn shift(&mut self, i: usize, by: [f64; 3]) {
-        self.places[i] = self.places[i].map(|p| add(p, by));
-    }
-}
-
-/// 1 at the joint, 0 from `blend` frames on and at the far end of the segment; flat at both ends, so
-/// that the path has no kink there.
-fn fade(distance: usize, farthest: usize, blend: f64) -> f64 {
-    if distance == 0 {
-        return 1.0;
-    }
-    let rest = (1.0 - distance as f64 / blend.min(farthest as f64)).max(0.0);
-    rest * rest * (3.0 - 2.0 * rest)
 }
 
 /// A border error frame by frame, turned with the local frames of the segments it passes.

@@ -10,10 +10,19 @@ const CONSTANT_M2: f64 = 1e-14;
 /// Markers a local frame needs.
 const RIGID: usize = 3;
 
-/// The markers that are seen together with `target` in at least `min_training` frames, at a distance
-/// that spreads by no more than `max_spread_m`: those with the steadiest distance first; of equally
-/// steady ones, the nearest first.
+/// The markers of [`rank_with_spread`] alone.
 pub(crate) fn rank(take: &Take, target: usize, params: &LocalRidgeParams) -> Vec<usize> {
+    rank_with_spread(take, target, params).into_iter().map(|(m, _)| m).collect()
+}
+
+/// The markers that are seen together with `target` in at least `min_training` frames, at a distance
+/// that spreads by no more than `max_spread_m`, with this spread in metres: those with the steadiest
+/// distance first; of equally steady ones, the nearest first.
+pub(crate) fn rank_with_spread(
+    take: &Take,
+    target: usize,
+    params: &LocalRidgeParams,
+) -> Vec<(usize, f64)> {
     let most = params.max_spread_m * params.max_spread_m;
     let mut found: Vec<(f64, f64, usize)> = (0..take.marker_count())
         .filter(|&m| m != target)
@@ -23,7 +32,7 @@ pub(crate) fn rank(take: &Take, target: usize, params: &LocalRidgeParams) -> Vec
         })
         .collect();
     found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
-    found.into_iter().map(|(_, _, m)| m).collect()
+    found.into_iter().map(|(variance, _, m)| (m, variance.sqrt())).collect()
 }
 
 /// Variance and mean of the distance over the frames that show both markers.

@@ -1,15 +1,13 @@
 //! A trained prediction of one marker from its neighbours.
 
-use mocap_core::{
-    Take,
-    geometry::{add, distance, norm, scale, sub},
-};
-use ndarray::{Array2, Axis, s};
+use mocap_core::{Take, geometry::sub};
+use ndarray::{Array2, s};
 
 use crate::{
     LocalRidgeParams,
     frame::{LocalFrame, Reference},
     neighbours::{Neighbours, point},
+    reach::Reach,
     regression::{Linear, Moments},
     spread::Spread,
 };
@@ -60,7 +58,9 @@ impl Predictor {
                 *cell = x - o;
             }
         }
-        let reach = Reach::of(&rows);
+        let target_of =
+            |row: ndarray::ArrayView1<'_, f64>| std::array::from_fn(|a| row[origin.len() - 3 + a]);
+        let reach = Reach::of(rows.rows().into_iter().map(target_of));
         let (linear, errors) = fit(&rows, &reach, params.ridge);
         let mut by_frame = vec![None; take.frames()];
         for (&t, error) in neighbours.training.iter().zip(errors) {
@@ -90,37 +90,6 @@ impl Predictor {
     }
 }
 
-/// Where a marker can be in local coordinates, judged by where it was.
-///
-/// A regression from few or similar frames may answer with metres to a pose it has not seen.
-#[derive(Debug, Clone, Copy)]
-struct Reach {
-    centre: [f64; 3],
-    radius_m: f64,
-}
-
-impl Reach {
-    /// So many times as far as the training frames go: out of the way of sound extrapolation.
-    const MARGIN: f64 = 3.0;
-
-    /// Soft tissue and joints give so much anyway.
-    const LEAST_M: f64 = 0.05;
-
-    fn of(rows: &Array2<f64>) -> Self {
-        let target = rows.slice(s![.., rows.ncols() - 3..]);
-        let mean = target.sum_axis(Axis(0)) / rows.nrows().max(1) as f64;
-        let centre = [mean[0], mean[1], mean[2]];
-        let away = target.rows().into_iter().map(|p| distance([p[0], p[1], p[2]], centre));
-        Self { centre, radius_m: (Self::MARGIN * away.fold(0.0, f64::max)).max(Self::LEAST_M) }
-    }
-
-    fn limit(&self, p: [f64; 3]) -> [f64; 3] {
-        let away = sub(p, self.centre);
-        let share = self.radius_m / norm(away);
-        if share < 1.0 { add(self.centre, scale(share, away)) } else { p }
-    }
-}
-
 /// The regression on all rows, and the error of each row when its fold is left out.
 fn fit(rows: &Array2<f64>, reach: &Reach, ridge: f64) -> (Linear, Vec<[f64; 3]>) {
     let (n, columns) = rows.dim();
@@ -140,27 +109,4 @@ fn fit(rows: &Array2<f64>, reach: &Reach, ridge: f64) -> (Linear, Vec<[f64; 3]>)
         }
     }
     (Linear::ridge(&all, ridge), errors)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Two training rows, half a metre on either side of (1, 0, 0).
-    #[test]
-    fn a_prediction_out_of_reach_is_drawn_back() {
-        let rows = ndarray::array![[7.0, 0.5, 0.0, 0.0], [8.0, 1.5, 0.0, 0.0]];
-        let reach = Reach::of(&rows);
-        assert!(distance(reach.limit([1.0, 0.6, 0.0]), [1.0, 0.6, 0.0]) < 1e-15);
-        assert!(distance(reach.limit([1.0, 0.0, 80.0]), [1.0, 0.0, 1.5]) < 1e-15);
-    }
-
-    /// A marker that never moved in its frame may move by five centimetres.
-    #[test]
-    fn a_marker_that_never_moved_has_some_reach() {
-        let reach = Reach::of(&ndarray::array![[0.0, 2.0, 2.0, 2.0], [1.0, 2.0, 2.0, 2.0]]);
-        assert!(distance(reach.limit([2.04, 2.0, 2.0]), [2.04, 2.0, 2.0]) < 1e-15);
-        assert!(distance(reach.limit([9.0, 2.0, 2.0]), [2.05, 2.0, 2.0]) < 1e-15);
-        assert!(distance(reach.limit([2.0; 3]), [2.0; 3]) < 1e-15);
-    }
 }

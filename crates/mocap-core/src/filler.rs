@@ -128,6 +128,20 @@ pub enum Refusal {
     /// The method's answer was not finite.
     #[error("the method gave no finite position")]
     NotFinite,
+    /// The method expects to err by more than the user allows.
+    #[error("the expected error of {:.1} mm exceeds the limit of {:.1} mm", 1e3 * .expected_m, 1e3 * .limit_m)]
+    TooUncertain {
+        /// Root mean square of the expected 3-D error in metres.
+        expected_m: f64,
+        /// The limit in metres.
+        limit_m: f64,
+    },
+    /// The user limits the error, and it is not known.
+    #[error("the take shows nothing like the gap to tell how far a fill would err")]
+    Untested,
+    /// The observer stopped the work before the method came to this gap.
+    #[error("the work was stopped before this gap")]
+    Stopped,
 }
 
 /// A gap that was left open.
@@ -137,6 +151,17 @@ pub struct Refused {
     pub gap: Gap,
     /// Why.
     pub reason: Refusal,
+}
+
+/// What a gap was filled with, for methods that choose.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Choice {
+    /// The gap.
+    pub gap: Gap,
+    /// Root mean square of the expected 3-D error in metres, where it is known.
+    pub expected_m: Option<f64>,
+    /// Methods by their share in the fill, from 0 to 1, the largest first.
+    pub shares: Vec<(String, f64)>,
 }
 
 /// How a fill came about.
@@ -153,6 +178,8 @@ pub struct FillReport {
     pub objective: Vec<f64>,
     /// Gaps left open.
     pub refusals: Vec<Refused>,
+    /// What each gap was filled with, for methods that choose.
+    pub choices: Vec<Choice>,
     /// Which frames keep their bones, for methods that promise exact lengths.
     pub bones: Option<BoneReport>,
 }
@@ -167,6 +194,7 @@ impl FillReport {
             iterations: 0,
             objective: Vec::new(),
             refusals: Vec::new(),
+            choices: Vec::new(),
             bones: None,
         }
     }

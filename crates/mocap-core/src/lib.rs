@@ -24,7 +24,9 @@ pub use bone_report::{BoneReport, InfeasibleFrame};
 pub use bones::{Bone, BoneRule, BoneSet, RigidPairs};
 pub use error::CoreError;
 pub use filled::{CellState, Estimates, Filled};
-pub use filler::{FillError, FillReport, GapFiller, IterReport, Refusal, Refused, Termination};
+pub use filler::{
+    Choice, FillError, FillReport, GapFiller, IterReport, Refusal, Refused, Termination,
+};
 pub use gap::{Gap, GapContext};
 pub use geometry::{RigidTransform, Rotation};
 pub use holdout::Holdout;

@@ -68,6 +68,7 @@ fn methods_read_the_options_they_name() {
         ..plain
     };
     let changes = [
+        ("max-error", Options { max_error_m: Some(1e-9), ..plain.clone() }),
         ("hidden", Options { hidden: Some(4), ..plain.clone() }),
         ("iterations", Options { iterations: Some(6), ..plain.clone() }),
         ("bones", Options { bones: Bones::None, ..plain.clone() }),

@@ -1,0 +1,120 @@
+//! Candidates mixed by their errors in pseudo-gaps.
+
+use std::ops::Range;
+
+use locality_ridge::ensemble::{Candidate, PseudoGap, Sides};
+use mocap_core::geometry::{add, dot, scale};
+
+use super::{
+    sigma::{Errors, Spread},
+    stack,
+};
+
+/// A run of filled frames.
+#[derive(Debug, Clone)]
+pub(super) struct Mixture {
+    pub positions: Vec<[f64; 3]>,
+    /// NaN where nothing is known of the errors.
+    pub sigma_m: Vec<f64>,
+    /// Mean square error in pseudo-gaps in m²; `None` without any.
+    pub square_m2: Option<f64>,
+    /// Names and weights, of sum 1.
+    pub shares: Vec<(&'static str, f64)>,
+}
+
+/// Where candidates were tried.
+#[derive(Clone, Copy)]
+pub(super) struct Tried<'a> {
+    pub pseudo_gaps: &'a [PseudoGap],
+    /// Frames of each that errors are known in.
+    pub scored: &'a [Vec<usize>],
+}
+
+impl Mixture {
+    /// Mixes at least one candidate for the given frames.
+    pub fn of(
+        candidates: &[Candidate],
+        tried: Tried<'_>,
+        frames: &Range<usize>,
+        sides: Sides,
+        rate_hz: f64,
+    ) -> Self {
+        let weights = stack::weights(candidates);
+        let mixed = |of: &dyn Fn(&Candidate) -> [f64; 3]| {
+            let parts = candidates.iter().zip(&weights);
+            parts.fold([0.0; 3], |sum, (candidate, &w)| add(sum, scale(w, of(candidate))))
+        };
+        let of_gap = |(g, frames): (usize, &Vec<usize>)| -> Vec<[f64; 3]> {
+            (0..frames.len()).map(|k| mixed(&|c| c.errors[g][k])).collect()
+        };
+        let errors: Vec<Vec<[f64; 3]>> = tried.scored.iter().enumerate().map(of_gap).collect();
+        let tried: Vec<Errors<'_>> = tried
+            .pseudo_gaps
+            .iter()
+            .zip(tried.scored)
+            .zip(&errors)
+            .map(|((gap, frames), errors)| Errors { gap, frames, errors })
+            .collect();
+        let spread = Spread::of(&tried, rate_hz);
+        let sigma = |t: usize| spread.map_or(f64::NAN, |s| s.sigma_m(t, frames, sides));
+        Self {
+            positions: (0..frames.len()).map(|k| mixed(&|c| c.positions[k])).collect(),
+            sigma_m: frames.clone().map(sigma).collect(),
+            square_m2: mean_square(&errors),
+            shares: shares(candidates, &weights),
+        }
+    }
+
+    /// Two fills of the same frames, weighed by their errors as if these had nothing in common.
+    pub fn with(&self, other: &Self) -> Self {
+        let weight = match (self.square_m2, other.square_m2) {
+            (Some(a), Some(b)) if a + b > 0.0 => {
+                let (a, b) = (a.powf(-stack::SHARPNESS), b.powf(-stack::SHARPNESS));
+                if a.is_infinite() { 1.0 } else { a / (a + b) }
+            }
+            (None, Some(_)) => 0.0,
+            _ => 1.0,
+        };
+        let rest = 1.0 - weight;
+        let blend =
+            |a: f64, b: f64| if rest == 0.0 { a } else { (weight * a * a + rest * b * b).sqrt() };
+        Self {
+            positions: self
+                .positions
+                .iter()
+                .zip(&other.positions)
+                .map(|(&p, &q)| add(scale(weight, p), scale(rest, q)))
+                .collect(),
+            sigma_m: self.sigma_m.iter().zip(&other.sigma_m).map(|(&a, &b)| blend(a, b)).collect(),
+            square_m2: self.square_m2.map_or(other.square_m2, |a| {
+                Some(weight * a + other.square_m2.map_or(0.0, |b| rest * b))
+            }),
+            shares: self
+                .shares
+                .iter()
+                .map(|&(name, w)| (name, w * weight))
+                .chain(other.shares.iter().map(|&(name, w)| (name, w * rest)))
+                .collect(),
+        }
+    }
+}
+
+fn mean_square(errors: &[Vec<[f64; 3]>]) -> Option<f64> {
+    let of_gap = |errors: &Vec<[f64; 3]>| {
+        errors.iter().map(|&e| dot(e, e)).sum::<f64>() / errors.len() as f64
+    };
+    let known: Vec<f64> = errors.iter().filter(|e| !e.is_empty()).map(of_gap).collect();
+    (!known.is_empty()).then(|| known.iter().sum::<f64>() / known.len() as f64)
+}
+
+/// Weights by name, in the order in which names come.
+fn shares(candidates: &[Candidate], weights: &[f64]) -> Vec<(&'static str, f64)> {
+    let mut shares: Vec<(&'static str, f64)> = Vec::new();
+    for (candidate, weight) in candidates.iter().zip(weights) {
+        match shares.iter_mut().find(|(name, _)| *name == candidate.name) {
+            Some((_, sum)) => *sum += weight,
+            None => shares.push((candidate.name, *weight)),
+        }
+    }
+    shares
+}

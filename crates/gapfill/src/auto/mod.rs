@@ -1,0 +1,218 @@
+//! The best mixture of methods for each gap, chosen by trying them on gaps whose truth is known.
+
+mod canvas;
+mod mixture;
+mod rivals;
+mod sigma;
+mod stack;
+
+use std::ops::ControlFlow;
+
+use baselines::{CubicSpline, Pca, Pchip};
+use bolero_sc::{BoleroSc, BoleroScParams};
+use lds_kalman::filler::{LdsFiller, LdsFillerParams};
+use locality_ridge::ensemble::Ensemble;
+use mocap_core::{
+    Choice, FillError, FillReport, Filled, Gap, GapContext, GapFiller, IterReport, Refusal,
+    Refused, Take, Termination,
+};
+
+use self::{
+    canvas::{Canvas, Piece},
+    mixture::{Mixture, Tried},
+    rivals::{Rival, compete},
+};
+use crate::{Edges, Joined};
+
+/// Where the neighbours expect to err by more, other methods are asked too.
+const POOR_M: f64 = 0.025;
+
+/// Where they expect to err by more, even those that take long.
+const HOPELESS_M: f64 = 0.06;
+
+/// In shorter black-outs a curve through each marker is as good as a model of the motion.
+const CURVE_S: f64 = 0.12;
+
+/// What a user may ask of [`Auto`].
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct AutoParams {
+    /// Gaps that it expects to fill with a larger error stay open; positive. `None`: all are filled.
+    ///
+    /// # Units
+    /// Metres, root mean square of the 3-D error over a gap.
+    pub max_error_m: Option<f64>,
+    /// What becomes of black-outs at the start or end of the take where only interpolation is left.
+    pub edges: Edges,
+}
+
+/// Fills each gap with a mixture of the methods that do best in pseudo-gaps like it.
+///
+/// For one gap:
+/// 1. Eight pseudo-gaps of its length, with the same neighbours seen, are cut where the marker is observed.
+/// 2. Regressions on the neighbours ([`Ensemble`]) fill gap and pseudo-gaps.
+/// 3. Where no neighbour is seen, or the regressions err by centimetres in the pseudo-gaps, methods of other kinds
+///    fill them too: curves, principal components, and for more than a tenth of a second the dynamical systems `lds` and `bolero-sc`. They work on
+///    the take as filled so far.
+/// 4. The fill is the mixture with the least error in the pseudo-gaps. That error, by the distance from
+///    the borders, is the sigma of each filled sample: about 68 % of errors are within one sigma, 95 % within two.
+///
+/// # Cost
+/// Linear in the number of gaps; memory linear in the frames of the take.
+pub struct Auto {
+    params: AutoParams,
+    rivals: Vec<Rival>,
+}
+
+impl std::fmt::Debug for Auto {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Auto").field("params", &self.params).finish_non_exhaustive()
+    }
+}
+
+impl Auto {
+    /// A filler with these parameters, and with dynamical systems as they come.
+    ///
+    /// # Errors
+    /// [`FillError::Parameter`] that names the field, its value and the rule.
+    pub fn new(params: AutoParams) -> Result<Self, FillError> {
+        let lds = LdsFiller::new(LdsFillerParams::default())?;
+        let bolero = BoleroSc::new(BoleroScParams::default())?;
+        Self::with_systems(params, Box::new(Joined::new(lds)), Box::new(Joined::new(bolero)))
+    }
+
+    /// A filler with these parameters and these dynamical systems.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub(crate) fn with_systems(
+        params: AutoParams,
+        lds: Box<dyn GapFiller>,
+        bolero: Box<dyn GapFiller>,
+    ) -> Result<Self, FillError> {
+        if let Some(value) = params.max_error_m.filter(|&m| !(m.is_finite() && m > 0.0)) {
+            let rule = "positive and finite";
+            return Err(FillError::Parameter { field: "max_error_m", value, rule });
+        }
+        let spline = Box::new(CubicSpline { edges: params.edges });
+        let rivals = vec![
+            Rival { name: "spline", filler: spline, costly: false },
+            Rival { name: "pchip", filler: Box::new(Pchip { edges: params.edges }), costly: false },
+            Rival { name: "pca", filler: Box::new(Pca::default()), costly: false },
+            Rival { name: "lds", filler: lds, costly: true },
+            Rival { name: "bolero-sc", filler: bolero, costly: true },
+        ];
+        Ok(Self { params, rivals })
+    }
+}
+
+impl GapFiller for Auto {
+    fn name(&self) -> &'static str {
+        "auto"
+    }
+
+    fn fill_observed(
+        &self,
+        take: &Take,
+        observer: &mut dyn FnMut(&IterReport) -> ControlFlow<()>,
+    ) -> Result<Filled, FillError> {
+        let gaps = take.gaps();
+        if gaps.is_empty() {
+            let report = FillReport::new(self.name(), Termination::NothingToFill);
+            return Ok(Filled::unchanged(take, report)?);
+        }
+        if take.observed().count() == 0 {
+            return Err(FillError::NothingObserved);
+        }
+        let mut report = FillReport::new(self.name(), Termination::ClosedForm);
+        let (seen, never): (Vec<Gap>, Vec<Gap>) =
+            gaps.into_iter().partition(|gap| gap.context(take.frames()) != GapContext::Whole);
+        let refuse = |gap| Refused { gap, reason: Refusal::NeverSeen };
+        report.refusals.extend(never.into_iter().map(refuse));
+
+        let mut canvas = Canvas::new(take);
+        let mut ensemble = Ensemble::new(take);
+        for (k, gap) in seen.iter().enumerate() {
+            canvas.add(local(&mut ensemble, gap, take.rate_hz()));
+            let expected = canvas.square_m2(gap).unwrap_or(0.0).sqrt();
+            let done = IterReport { iteration: k + 1, limit: seen.len(), objective: expected };
+            if observer(&done).is_break() {
+                report.termination = Termination::Stopped;
+                break;
+            }
+        }
+        if report.termination != Termination::Stopped {
+            self.compete(take, &mut canvas)?;
+        }
+        for gap in seen {
+            match self.settle(&mut canvas, &gap, report.termination) {
+                Ok(choice) => report.choices.push(choice),
+                Err(reason) => report.refusals.push(Refused { gap, reason }),
+            }
+        }
+        Ok(Filled::merge(take, canvas.into_estimates(), report)?)
+    }
+}
+
+/// A gap filled from its neighbours, piece by piece.
+fn local(ensemble: &mut Ensemble<'_>, gap: &Gap, rate_hz: f64) -> Vec<Piece> {
+    let piece = |part: locality_ridge::ensemble::Part| {
+        let tried = Tried { pseudo_gaps: &part.pseudo_gaps, scored: &part.scored };
+        let fill = (!part.candidates.is_empty())
+            .then(|| Mixture::of(&part.candidates, tried, &part.frames, part.sides, rate_hz));
+        Piece { marker: gap.marker, frames: part.frames, fill }
+    };
+    ensemble.parts(gap).into_iter().map(piece).collect()
+}
+
+impl Auto {
+    /// Asks other methods where neighbours say nothing, or little.
+    fn compete(&self, take: &Take, canvas: &mut Canvas<'_>) -> Result<(), FillError> {
+        let poor = |piece: &Piece| {
+            piece.fill.as_ref().is_none_or(|f| f.square_m2.is_none_or(|e| e > POOR_M * POOR_M))
+        };
+        let base = canvas.filled_but(&poor)?;
+        let open: Vec<Gap> = base
+            .gaps()
+            .into_iter()
+            .filter(|gap| gap.context(take.frames()) != GapContext::Whole)
+            .collect();
+        if open.is_empty() {
+            return Ok(());
+        }
+        let costly = canvas.pieces().any(|piece| {
+            let long = piece.frames.len() as f64 > CURVE_S * take.rate_hz();
+            let lost = |f: &Mixture| f.square_m2.is_none_or(|e| e > HOPELESS_M * HOPELESS_M);
+            long && piece.fill.as_ref().is_none_or(lost)
+        });
+        let answers = compete(&base, &open, &self.rivals, costly);
+        for (gap, answer) in open.iter().zip(answers) {
+            if let Some(answer) = answer {
+                canvas.offer(gap, &answer);
+            }
+        }
+        Ok(())
+    }
+
+    /// Finishes a gap, or gives the reason why it stays open.
+    fn settle(
+        &self,
+        canvas: &mut Canvas<'_>,
+        gap: &Gap,
+        termination: Termination,
+    ) -> Result<Choice, Refusal> {
+        let stopped = termination == Termination::Stopped;
+        let missing = if stopped { Refusal::Stopped } else { Refusal::NoNeighbour };
+        let (expected_m, shares) = canvas.settle(gap).ok_or(missing)?;
+        match (self.params.max_error_m, expected_m) {
+            (Some(limit_m), Some(expected_m)) if expected_m > limit_m => {
+                canvas.erase(gap);
+                Err(Refusal::TooUncertain { expected_m, limit_m })
+            }
+            (Some(_), None) => {
+                canvas.erase(gap);
+                Err(Refusal::Untested)
+            }
+            _ => Ok(Choice { gap: gap.clone(), expected_m, shares }),
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Weights of candidates from their errors in pseudo-gaps.
+
+use locality_ridge::ensemble::Candidate;
+
+/// Before they are adjusted, weights go with the mean square error to the power of minus this.
+pub(super) const SHARPNESS: f64 = 2.0;
+
+/// How strongly the adjusted weights are held to those, as a share of the expected square error.
+const HOLD: f64 = 0.3;
+
+/// Steps of the adjustment.
+const STEPS: usize = 60;
+
+/// Weights of sum 1, none of them negative: those that make the mean square error of the mixture in the
+/// pseudo-gaps least, held by their relative entropy to weights from each candidate's own error.
+///
+/// The errors of candidates are alike, so that the mixture gains most from those that differ; a few
+/// pseudo-gaps do not tell much about thirty candidates, so that the weights must be held.
+pub(super) fn weights(candidates: &[Candidate]) -> Vec<f64> {
+    let products = products(candidates);
+    let n = candidates.len();
+    let own: Vec<f64> = (0..n).map(|k| products[k * n + k]).collect();
+    let prior = prior(&own);
+    let scale: f64 = prior.iter().zip(&own).map(|(w, e)| w * e).sum();
+    if !(scale > 0.0 && scale.is_finite()) {
+        return prior;
+    }
+    let rate = 0.5 / scale;
+    let mut weights = prior.clone();
+    for _ in 0..STEPS {
+        let gradient: Vec<f64> = (0..n)
+            .map(|k| {
+                let row = &products[k * n..(k + 1) * n];
+                let error: f64 = row.iter().zip(&weights).map(|(c, w)| c * w).sum();
+                2.0 * error + HOLD * scale * (weights[k].max(1e-12) / prior[k].max(1e-12)).ln()
+            })
+            .collect();
+        let mean: f64 = gradient.iter().zip(&weights).map(|(g, w)| g * w).sum();
+        for (w, g) in weights.iter_mut().zip(&gradient) {
+            *w *= (-rate * (g - mean)).clamp(-5.0, 5.0).exp();
+        }
+        let sum: f64 = weights.iter().sum();
+        weights.iter_mut().for_each(|w| *w /= sum);
+    }
+    weights
+}
+
+/// Mean products of the errors of two candidates, `(n, n)` in m²: each pseudo-gap counts alike.
+fn products(candidates: &[Candidate]) -> Vec<f64> {
+    let n = candidates.len();
+    let mut products = vec![0.0; n * n];
+    for i in 0..n {
+        for j in 0..=i {
+            let (a, b) = (&candidates[i].errors, &candidates[j].errors);
+            let known = a.iter().filter(|errors| !errors.is_empty()).count().max(1);
+            let mean = a.iter().zip(b).map(|(a, b)| mean_product(a, b)).sum::<f64>() / known as f64;
+            products[i * n + j] = mean;
+            products[j * n + i] = mean;
+        }
+    }
+    products
+}
+
+fn mean_product(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
+    let sum: f64 = a.iter().flatten().zip(b.iter().flatten()).map(|(x, y)| x * y).sum();
+    sum / a.len().max(1) as f64
+}
+
+fn prior(own: &[f64]) -> Vec<f64> {
+    let least = own.iter().copied().fold(f64::INFINITY, f64::min);
+    // Errors at the level of rounding are all the same.
+    let weigh = |e: &f64| ((least + 1e-18) / (e + 1e-18)).powf(SHARPNESS);
+    let raw: Vec<f64> = own.iter().map(weigh).collect();
+    let sum: f64 = raw.iter().sum();
+    raw.iter().map(|w| w / sum).collect()
+}
