@@ -31,6 +31,7 @@ const SIDECAR: &str = ".fill.json";
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   mocap fill walk.c3d -o filled.c3d
+  mocap fill walk.c3d -o filled.c3d --max-error 10
   mocap fill walk.c3d -o filled.c3d --method spline --max-gap 0.2
   mocap fill walk.csv -o filled.c3d --rate 120 --report report
 
@@ -92,6 +93,9 @@ struct MethodArgs {
     /// What becomes of gaps at the start or end of the take, for methods that interpolate
     #[arg(long, value_enum, default_value = "refuse")]
     edges: EdgesArg,
+    /// Leave gaps open that are expected to be filled with a larger error, for `auto`
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    max_error: Option<f64>,
     /// What becomes of the step at the borders of a gap [default: the method's own choice]
     #[arg(long, value_enum)]
     borders: Option<BordersArg>,
@@ -175,6 +179,9 @@ impl Fill {
         if self.max_gap.is_some_and(|s| !(s.is_finite() && s > 0.0)) {
             bail!("--max-gap must be a positive number of seconds");
         }
+        if self.method.max_error.is_some_and(|mm| !(mm.is_finite() && mm > 0.0)) {
+            bail!("--max-error must be a positive number of millimetres");
+        }
         if self.threads == Some(0) {
             bail!("--threads must be at least 1");
         }
@@ -239,6 +246,7 @@ impl Fill {
             "iterations": self.method.iterations, "seed": self.method.seed,
             "edges": format!("{:?}", self.method.edges).to_lowercase(),
             "borders": self.method.borders.map(|b| format!("{b:?}").to_lowercase()), "max_gap_s": self.max_gap,
+            "max_error_mm": self.method.max_error,
         });
         Ok(object)
     }
@@ -288,6 +296,7 @@ impl MethodArgs {
                 EdgesArg::Refuse => Edges::Refuse,
                 EdgesArg::Hold => Edges::Hold,
             },
+            max_error_m: self.max_error.map(|mm| mm / 1e3),
             borders: self.borders.map(|borders| match borders {
                 BordersArg::Join => Borders::Join,
                 BordersArg::Keep => Borders::Keep,

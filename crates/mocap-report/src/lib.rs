@@ -17,5 +17,7 @@ pub use figure::{
     plot_motion, plot_spots, plot_take, render_png, render_svg,
 };
 pub use html::{html_page, web_page};
-pub use summary::{BrokenBones, FillSummary, GapFill, GapSummary, MarkerSummary, TakeSummary};
+pub use summary::{
+    BrokenBones, FillSummary, GapFill, GapSummary, MarkerSummary, Share, TakeSummary,
+};
 pub use table::{Entry, Table, escape};

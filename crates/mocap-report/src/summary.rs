@@ -1,7 +1,7 @@
 mod fill;
 mod take;
 
-pub use fill::{BrokenBones, FillSummary, GapFill};
+pub use fill::{BrokenBones, FillSummary, GapFill, Share};
 pub use take::{GapSummary, MarkerSummary, TakeSummary};
 
 /// Number that a file gives to a frame.

@@ -48,12 +48,30 @@ pub struct GapFill {
     pub last_frame: i64,
     /// Method that was asked to fill it.
     pub method: String,
+    /// What it mixed, for a method that chooses, the largest share first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub mixture: Vec<Share>,
     /// Root mean square, over its filled samples, of their standard deviations in mm.
     pub sigma_mm: Option<f64>,
     /// The larger of its two border steps in mm, as [`metrics::BorderStep`] defines them.
     pub border_step_mm: Option<f64>,
     /// Why it, or part of it, was left open; `None` for a gap that is closed.
     pub refused: Option<String>,
+}
+
+/// A method's share in a mixture.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Share {
+    /// Name of the method.
+    pub method: String,
+    /// From 0 to 1.
+    pub share: f64,
+}
+
+fn mixture(filled: &Filled, gap: &Gap) -> Vec<Share> {
+    let choice = filled.report().choices.iter().find(|choice| choice.gap == *gap);
+    let shares = choice.into_iter().flat_map(|choice| &choice.shares);
+    shares.map(|(method, share)| Share { method: method.clone(), share: *share }).collect()
 }
 
 fn broken_bones(filled: &Filled, first_frame: i64) -> Vec<BrokenBones> {
@@ -131,7 +149,7 @@ impl FillSummary {
                 Entry::Text(gap.marker.clone()),
                 Entry::Integer(gap.first_frame),
                 Entry::Integer(gap.last_frame),
-                Entry::Text(gap.method.clone()),
+                Entry::Text(gap.method_text()),
                 Entry::number(gap.sigma_mm, 2),
                 Entry::number(gap.border_step_mm, 2),
                 gap.refused.clone().map_or(Entry::Empty, Entry::Text),
@@ -157,10 +175,23 @@ impl GapFill {
             first_frame: file_frame(first_frame, gap.frames.start),
             last_frame: file_frame(first_frame, gap.frames.end).saturating_sub(1),
             method: filled.report().method.clone(),
+            mixture: mixture(filled, gap),
             sigma_mm: sigma_mm(filled, gap),
             border_step_mm: border_step(filled.take(), gap).max_mm(),
             refused: refused(filled, gap),
         }
+    }
+}
+
+impl GapFill {
+    /// The method, or the two largest shares of a mixture: `auto: steady 40 %, near 30 %`.
+    fn method_text(&self) -> String {
+        let part = |s: &Share| format!("{} {:.0} %", s.method, 100.0 * s.share);
+        let largest: Vec<String> = self.mixture.iter().take(2).map(part).collect();
+        if largest.is_empty() {
+            return self.method.clone();
+        }
+        format!("{}: {}", self.method, largest.join(", "))
     }
 }
 
