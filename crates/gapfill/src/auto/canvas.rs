@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, ops::Range};
 
 use locality_ridge::join;
-use mocap_core::{CoreError, Estimates, Gap, Take};
+use mocap_core::{Choice, CoreError, Estimates, Gap, Take};
 use ndarray::Array2;
 
 use super::mixture::Mixture;
@@ -86,9 +86,8 @@ impl<'a> Canvas<'a> {
         (!squares.is_empty()).then(|| squares.iter().sum::<f64>() / squares.len() as f64)
     }
 
-    /// Puts the pieces of a gap together; `None` if one has no fill. Gives the root mean square of sigma and the
-    /// shares of methods, the largest first.
-    pub fn settle(&mut self, gap: &Gap) -> Option<(Option<f64>, Vec<(String, f64)>)> {
+    /// Puts the pieces of a gap together; `None` if one has no fill.
+    pub fn settle(&mut self, gap: &Gap) -> Option<Choice> {
         let pieces: Vec<&Piece> = self.of_gap(gap).collect();
         let fills = pieces.iter().map(|piece| piece.fill.as_ref()).collect::<Option<Vec<_>>>()?;
         if fills.is_empty() {
@@ -127,7 +126,8 @@ impl<'a> Canvas<'a> {
                 all[(t, gap.marker)] = *sigma;
             }
         }
-        Some((square.is_finite().then(|| square.sqrt()), shares))
+        let expected_m = square.is_finite().then(|| square.sqrt());
+        Some(Choice { gap: gap.clone(), expected_m, shares })
     }
 
     /// Leaves a gap open.

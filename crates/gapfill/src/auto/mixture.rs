@@ -53,7 +53,7 @@ impl Mixture {
             .iter()
             .zip(tried.scored)
             .zip(&errors)
-            .map(|((gap, frames), errors)| Errors { gap, frames, errors })
+            .map(|((gap, frames), errors)| Errors { gap, frames, values: errors })
             .collect();
         let spread = Spread::of(&tried, rate_hz);
         let sigma = |t: usize| spread.map_or(f64::NAN, |s| s.sigma_m(t, frames, sides));

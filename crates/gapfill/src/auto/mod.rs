@@ -202,8 +202,8 @@ impl Auto {
     ) -> Result<Choice, Refusal> {
         let stopped = termination == Termination::Stopped;
         let missing = if stopped { Refusal::Stopped } else { Refusal::NoNeighbour };
-        let (expected_m, shares) = canvas.settle(gap).ok_or(missing)?;
-        match (self.params.max_error_m, expected_m) {
+        let choice = canvas.settle(gap).ok_or(missing)?;
+        match (self.params.max_error_m, choice.expected_m) {
             (Some(limit_m), Some(expected_m)) if expected_m > limit_m => {
                 canvas.erase(gap);
                 Err(Refusal::TooUncertain { expected_m, limit_m })
@@ -212,7 +212,7 @@ impl Auto {
                 canvas.erase(gap);
                 Err(Refusal::Untested)
             }
-            _ => Ok(Choice { gap: gap.clone(), expected_m, shares }),
+            _ => Ok(choice),
         }
     }
 }

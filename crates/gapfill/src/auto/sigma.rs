@@ -20,7 +20,7 @@ pub(super) struct Spread {
 pub(super) struct Errors<'a> {
     pub gap: &'a PseudoGap,
     pub frames: &'a [usize],
-    pub errors: &'a [[f64; 3]],
+    pub values: &'a [[f64; 3]],
 }
 
 impl Spread {
@@ -29,8 +29,8 @@ impl Spread {
         let samples: Vec<(f64, Option<f64>, Option<f64>, f64)> = pseudo_gaps
             .iter()
             .flat_map(|tried| {
-                let weight = 1.0 / tried.errors.len().max(1) as f64;
-                tried.frames.iter().zip(tried.errors).map(move |(&t, &e)| {
+                let weight = 1.0 / tried.values.len().max(1) as f64;
+                tried.frames.iter().zip(tried.values).map(move |(&t, &e)| {
                     let (before, after) = distances(t, &tried.gap.frames, tried.gap.sides);
                     (dot(e, e), before, after, weight)
                 })

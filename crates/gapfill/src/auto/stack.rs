@@ -40,7 +40,9 @@ pub(super) fn weights(candidates: &[Candidate]) -> Vec<f64> {
             *w *= (-rate * (g - mean)).clamp(-5.0, 5.0).exp();
         }
         let sum: f64 = weights.iter().sum();
-        weights.iter_mut().for_each(|w| *w /= sum);
+        for w in &mut weights {
+            *w /= sum;
+        }
     }
     weights
 }

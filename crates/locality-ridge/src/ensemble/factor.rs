@@ -98,7 +98,7 @@ fn factorise(a: &mut [f64], n: usize) -> Option<()> {
             row[j] = (row[j] - dot(&row[..j], &other[..j])) / other[j];
         }
         let pivot = row[i] - dot(&row[..i], &row[..i]);
-        if !(pivot > 0.0) {
+        if pivot.is_nan() || pivot <= 0.0 {
             return None;
         }
         row[i] = pivot.sqrt();

@@ -80,6 +80,6 @@ impl<'a> Process<'a> {
         };
         let before = (around.start < hidden.start).then(|| beside(around.start));
         let after = (hidden.end < around.end).then(|| beside(hidden.end));
-        Some(LeftOut { before, after, errors })
+        Some(LeftOut { errors, before, after })
     }
 }
