@@ -34,7 +34,7 @@ pub(crate) struct Demo {
 const HIDDEN: [&str; 2] = ["RKNE", "RSHN"];
 /// Length of the gap, in the middle of the take.
 const GAP_S: f64 = 0.5;
-const METHODS: [&str; 4] = ["linear", "spline", "lds", "bolero-sc"];
+const METHODS: [&str; 5] = ["linear", "spline", "lds", "bolero-sc", "auto"];
 /// The method whose fill is drawn.
 const DRAWN: &str = gapfill::DEFAULT;
 
