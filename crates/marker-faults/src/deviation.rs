@@ -2,7 +2,7 @@
 
 use mocap_core::{
     Take,
-    geometry::{add, norm, scale, sub},
+    geometry::{norm, scale, sub},
 };
 
 use crate::neighbours::Neighbour;
@@ -88,21 +88,49 @@ fn deviation(
     base: &[usize],
     allowance: f64,
 ) -> Option<[f64; 3]> {
-    let offset = |s: usize| s as f64 - t as f64;
-    let mut predicted = [0.0; 3];
-    let mut product = 1.0;
-    for (k, &s) in base.iter().enumerate() {
-        let others = base.iter().enumerate().filter(|(other, _)| *other != k);
-        // Lagrange's weight at offset zero.
-        let weight: f64 = others.map(|(_, &r)| offset(r) / (offset(r) - offset(s))).product();
-        predicted = add(predicted, scale(weight, take.position(s, marker)?));
-        product *= offset(s).abs();
+    if let Some(weights) = consecutive(t, base) {
+        return weighted(take, marker, t, base, weights);
     }
+    let offset = |s: usize| s as f64 - t as f64;
+    // Lagrange's weights at offset zero.
+    let weight = |k: usize| {
+        let others = base.iter().enumerate().filter(|(other, _)| *other != k);
+        others.map(|(_, &r)| offset(r) / (offset(r) - offset(base[k]))).product::<f64>()
+    };
+    let weights: [f64; 4] = std::array::from_fn(|k| if k < base.len() { weight(k) } else { 0.0 });
+    let product: f64 = base.iter().map(|&s| offset(s).abs()).product();
     // The product of the offsets of consecutive frames: 1 · 1 · 2 · 2, or 1 · 2 · 3.
     let squares =
         if base.len() == 4 { (product / 4.0).sqrt() } else { (product / 6.0).cbrt().powi(2) };
     let excess = (allowance * squares).max(1.0);
-    Some(scale(1.0 / excess, sub(take.position(t, marker)?, predicted)))
+    Some(scale(1.0 / excess, weighted(take, marker, t, base, &weights)?))
+}
+
+/// Lagrange's weights where no frame is left out, which is nearly always.
+fn consecutive(t: usize, base: &[usize]) -> Option<&'static [f64]> {
+    match *base {
+        [a, _, _, d] if a + 2 == t && d == t + 2 => {
+            Some(&[-1.0 / 6.0, 4.0 / 6.0, 4.0 / 6.0, -1.0 / 6.0])
+        }
+        [a, _, c] if a + 3 == t && c + 1 == t => Some(&[1.0, -3.0, 3.0]),
+        [a, _, c] if a == t + 1 && c == t + 3 => Some(&[3.0, -3.0, 1.0]),
+        _ => None,
+    }
+}
+
+/// The sample less the weighted sum of others.
+fn weighted(
+    take: &Take,
+    marker: usize,
+    t: usize,
+    base: &[usize],
+    weights: &[f64],
+) -> Option<[f64; 3]> {
+    let mut left = take.position(t, marker)?;
+    for (&s, &weight) in base.iter().zip(weights) {
+        left = sub(left, scale(weight, take.position(s, marker)?));
+    }
+    Some(left)
 }
 
 /// The deviation that is left when the motion of the part is taken out: less the middle deviation of the neighbours in

@@ -5,6 +5,7 @@ mod figure;
 mod html;
 mod motion;
 mod properties;
+mod spots;
 mod summary;
 mod table;
 mod xml;
