@@ -1,6 +1,6 @@
 //! The evaluation of [Li10]: what is run for it.
 
-use std::{collections::BTreeMap, path::Path, sync::Arc};
+use std::{path::Path, sync::Arc};
 
 use augment::{GapSampler, GapSamplerParams, Occluder, PerFrameParams, Preset, Unlisted};
 
@@ -275,23 +275,4 @@ fn masks(motions: &Motions, name: &str, markers: [&str; 3]) -> Result<Vec<Trial>
         trial("both ends", ends),
         trial("overlapping gaps", runs(&overlapping)),
     ])
-}
-
-/// The methods of a report in their order, and the style of each.
-#[derive(Debug)]
-pub(crate) struct Legend<'a>(BTreeMap<&'a str, usize>);
-
-impl<'a> Legend<'a> {
-    pub(crate) fn of(labels: impl IntoIterator<Item = &'a str>) -> Self {
-        let mut places = BTreeMap::new();
-        for label in labels {
-            let next = places.len();
-            places.entry(label).or_insert(next);
-        }
-        Self(places)
-    }
-
-    pub(crate) fn style(&self, label: &str) -> crate::figure::Style {
-        crate::figure::Style::of(self.0.get(label).copied().unwrap_or(self.0.len()))
-    }
 }

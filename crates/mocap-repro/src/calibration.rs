@@ -4,8 +4,7 @@ use mocap_report::{Entry, draw::Pen};
 
 use crate::{
     Finished, Section, Sureness,
-    bolero::Legend,
-    figure::{Axis, Chart, Content, Figure, Key, Line, Mark, Panel, Panels, Points},
+    figure::{Axis, Chart, Content, Figure, Key, Legend, Line, Mark, Panel, Panels, Points},
     summary::group,
     sureness::{LENGTH_EDGES_S, MULTIPLES, length_class},
 };

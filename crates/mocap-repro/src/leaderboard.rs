@@ -1,10 +1,8 @@
 use mocap_report::Entry;
 
 use crate::{
-    Finished, Reference, Report, Row, Section, Stats,
-    bolero::Legend,
-    calibration, compare,
-    figure::{Content, Dots, Figure, Value},
+    Finished, Reference, Report, Row, Section, Stats, calibration, compare,
+    figure::{Content, Dots, Figure, Legend, Value},
     reference,
     report::{STATS_NOTE, stats_table},
     summarise,

@@ -3,11 +3,12 @@
 use mocap_report::Entry;
 
 use super::{
-    Evaluation, Legend, findings::findings, paper_figures, set, sweep_figures, sweeps, table_one,
+    Evaluation, findings::findings, paper_figures, set, sweep_figures, sweeps, table_one,
     trial_figures,
 };
 use crate::{
     Duel, Finished, Reference, Report, ReproError, Row, Section, Variant, compare, duels,
+    figure::Legend,
     reference,
     report::{STATS_NOTE, stats_table},
     summarise,

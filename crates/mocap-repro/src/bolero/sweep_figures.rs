@@ -2,10 +2,12 @@
 
 use mocap_report::draw::{Pen, colour};
 
-use super::{Legend, set};
+use super::set;
 use crate::{
     Finished, Reference,
-    figure::{Axis, Chart, Content, Figure, Key, Line, Mark, Panel, Panels, Points, Shape, Style},
+    figure::{
+        Axis, Chart, Content, Figure, Key, Legend, Line, Mark, Panel, Panels, Points, Shape, Style,
+    },
     summary::group,
 };
 
@@ -87,7 +89,7 @@ fn seeds(cells: &[Finished<'_>], references: &[Reference]) -> Option<Figure> {
     let mut panels = Vec::new();
     for (class, of_class) in group(&own, |cell| cell.trial.class.as_str()) {
         let methods = Legend::of(of_class.iter().map(|cell| cell.variant.label()));
-        let place = |label: &str| methods.0.get(label).map_or(0.0, |place| *place as f64 + 1.0);
+        let place = |label: &str| methods.place(label) as f64 + 1.0;
         let ours: Vec<(f64, f64)> = of_class
             .iter()
             .filter_map(|cell| Some((place(cell.variant.label()) - 0.12, cell.outcome.mse_m2?)))
@@ -102,16 +104,15 @@ fn seeds(cells: &[Finished<'_>], references: &[Reference]) -> Option<Figure> {
             let x = place(label) + 0.12;
             Some(vec![(x, of("mse_min")?), (x, of("mse_max")?)])
         };
-        let ranges: Vec<Vec<(f64, f64)>> = methods.0.keys().filter_map(|m| range(m)).collect();
+        let labels = methods.labels();
+        let ranges: Vec<Vec<(f64, f64)>> = labels.iter().filter_map(|m| range(m)).collect();
         let values = ours.iter().chain(ranges.iter().flatten()).map(|point| point.1);
-        let mut names: Vec<(&str, usize)> = methods.0.iter().map(|(m, p)| (*m, *p)).collect();
-        names.sort_by_key(|(_, place)| *place);
         let names: Vec<String> =
-            names.iter().map(|(name, _)| name.replace("+start=random", "")).collect();
+            labels.iter().map(|label| label.replace("+start=random", "")).collect();
         let ends = ranges.concat();
         let chart = Chart {
             heading: class.to_owned(),
-            x: Axis::linear(0.4, methods.0.len() as f64 + 0.6),
+            x: Axis::linear(0.4, labels.len() as f64 + 0.6),
             y: Axis::logarithmic(values),
             names,
             x_label: "method, from random starts".to_owned(),

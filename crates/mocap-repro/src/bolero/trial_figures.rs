@@ -2,10 +2,10 @@
 
 use mocap_report::draw::colour;
 
-use super::{Legend, set};
+use super::set;
 use crate::{
     Coordinates, Finished, Knowledge, Stats,
-    figure::{Axis, Bars, Chart, Content, Figure, Panel, Panels, Points, Shape, Style},
+    figure::{Axis, Bars, Chart, Content, Figure, Legend, Panel, Panels, Points, Shape, Style},
     summary::group,
 };
 
