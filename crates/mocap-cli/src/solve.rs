@@ -186,10 +186,14 @@ impl Solve {
             write(path, &encode_markers(&clean, format, unit, first_frame)?)?;
         }
         let title = self.input.file_name().unwrap_or_default().to_string_lossy();
+        let mapped: Vec<usize> = (0..take.marker_count())
+            .filter(|&m| !solution.unmapped.iter().any(|name| name == take.markers().name(m)))
+            .collect();
+        let shown = take.select(&mapped)?;
         let plot = MotionPlot {
             title: &title,
             motion: &solution.motion,
-            take,
+            take: &shown,
             residual_m: &solution.residual_m,
             up,
         };
@@ -240,7 +244,12 @@ impl Solve {
             say!("not settled      {:>10} frames: look at them in the plot", solution.unconverged);
         }
         if !solution.unmapped.is_empty() {
-            say!("not on the body  {}", solution.unmapped.join(", "));
+            const LISTED: usize = 8;
+            let listed =
+                solution.unmapped.iter().take(LISTED).map(String::as_str).collect::<Vec<_>>();
+            let more = solution.unmapped.len().saturating_sub(LISTED);
+            let more = if more > 0 { format!(", and {more} more") } else { String::new() };
+            say!("not on the body  {}{more}", listed.join(", "));
         }
         say!("wrote {} in {seconds:.1} s", self.output.output.display());
     }

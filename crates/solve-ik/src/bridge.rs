@@ -19,7 +19,7 @@ const SOFT_RAD: f64 = 0.3;
 const FIRM_M: f64 = 0.02;
 /// Time over which speeds at the ends of a bridge are taken, and for which they last at most, in seconds.
 const SPEED_S: f64 = 0.05;
-const LASTING_S: f64 = 0.25;
+const LASTING_S: f64 = 0.1;
 
 /// A run of frames in which a joint is not seen well.
 #[derive(Debug, Clone)]

@@ -19,6 +19,8 @@ const CHUNK: usize = 256;
 pub(crate) const BATCH: usize = 16 * CHUNK;
 /// Time between the frames of the scout, in seconds.
 const SCOUT_S: f64 = 1.0 / 15.0;
+/// Further steps of a frame that is still moving.
+const HARD_STEPS: usize = 60;
 /// Steps a frame of the scout.
 const SCOUT_STEPS: usize = 20;
 
@@ -154,7 +156,12 @@ fn chunk(
         let ties = Ties { target: &target, shift, turns: &turns };
         // A body moves on as it did.
         let mut state = last.as_ref().map_or_else(|| before.clone(), |last| ahead(last, &before));
-        let fit = solver.solve(&mut state, sight.at(frame), &ties, params.iterations);
+        let mut fit = solver.solve(&mut state, sight.at(frame), &ties, params.iterations);
+        if !fit.converged {
+            // A limb that comes back into view is far from where it was held.
+            fit = solver.solve(&mut state, sight.at(frame), &ties, HARD_STEPS);
+            fit.iterations += params.iterations;
+        }
         if frame >= frames.start {
             solved.push((state.clone(), fit));
         }

@@ -1,6 +1,6 @@
 //! The kinematic fill keeps the contract of every filler, and holds limbs together.
 
-use mocap_core::{GapFiller, Holdout, Mask, Refusal, geometry::distance};
+use mocap_core::{GapFiller, Holdout, Mask, Refusal, Take, geometry::distance};
 use mocap_synth::Activity;
 use mocap_testkit::{Claims, conformance};
 use solve_ik::{Body, IkFiller, IkParams};
@@ -70,4 +70,44 @@ fn a_marker_that_the_map_does_not_know_rides_along() {
     let never = Mask::from_fn(300, 41, |_, m| m == shin);
     let filled = filler.fill(&take.hide(&never).unwrap()).unwrap();
     assert_eq!(filled.report().refusals[0].reason, Refusal::NeverSeen);
+}
+
+/// Mean errors in metres of the kinematic fill and of straight lines, for a limb that is gone for half a second.
+fn limb_errors(take: &Take, limb: &[&str], start: usize) -> [f64; 2] {
+    let holdout = mocap_testkit::hide(take.clone(), limb, start + 1, start + 60);
+    let filler = IkFiller::new(vec![Body::cmu_41()], IkParams::default()).unwrap();
+    let filled = filler.fill(holdout.visible()).unwrap();
+    let (mut by_body, mut by_line, mut count) = (0.0, 0.0, 0.0);
+    for (t, m) in holdout.hidden().iter() {
+        let truth = take.position(t, m).unwrap();
+        let (a, b) = (take.position(start - 1, m).unwrap(), take.position(start + 60, m).unwrap());
+        let share = (t + 1 - start) as f64 / 61.0;
+        by_body += distance(filled.take().position(t, m).unwrap(), truth);
+        by_line += distance(std::array::from_fn(|c| a[c] + share * (b[c] - a[c])), truth);
+        count += 1.0;
+    }
+    [by_body / count, by_line / count]
+}
+
+#[test]
+fn whole_limbs_of_real_takes_are_filled_better_than_by_straight_lines() {
+    let limbs: [&[&str]; 2] = [
+        &["LUPA", "LELB", "LFRM", "LWRA", "LWRB", "LFIN"],
+        &["RTHI", "RKNE", "RSHN", "RANK", "RHEE", "RMT5", "RTOE"],
+    ];
+    let mut sums = [0.0; 2];
+    let mut trials = 0;
+    for name in ["127_07", "132_43"] {
+        let Some(take) = mocap_testkit::motion(name) else { continue };
+        for limb in limbs {
+            let start = (take.frames() - 60) / 2;
+            let [by_body, by_line] = limb_errors(&take, limb, start);
+            println!("{name} {}: {:.1} mm, lines {:.1} mm", limb[0], 1e3 * by_body, 1e3 * by_line);
+            sums = [sums[0] + by_body, sums[1] + by_line];
+            trials += 1;
+        }
+    }
+    let mean = sums.map(|sum| 1e3 * sum / f64::from(trials.max(1)));
+    println!("{trials} trials: {:.1} mm, lines {:.1} mm on average", mean[0], mean[1]);
+    assert!(trials == 0 || sums[0] < 0.8 * sums[1], "{sums:?}");
 }
