@@ -122,7 +122,10 @@ fn print(method: &str, class: &str, scores: &[Score]) {
         return;
     }
     let median = 0.5 * (means[(n - 1) / 2] + means[n / 2]);
-    let sigmas: Vec<f64> = scores.iter().flat_map(|s| s.in_sigmas.iter().copied()).collect();
+    let mut sigmas: Vec<f64> = scores.iter().flat_map(|s| s.in_sigmas.iter().copied()).collect();
+    sigmas.sort_by(f64::total_cmp);
+    let quantile = |share: f64| sigmas.get((share * sigmas.len() as f64) as usize).copied();
+    let radii = (quantile(0.683).unwrap_or(f64::NAN), quantile(0.954).unwrap_or(f64::NAN));
     let within =
         |k: f64| sigmas.iter().filter(|&&s| s <= k).count() as f64 / sigmas.len().max(1) as f64;
     let square: f64 = mean(
@@ -137,10 +140,12 @@ fn print(method: &str, class: &str, scores: &[Score]) {
     let seconds = mean(&scores.iter().map(|s| s.seconds).collect::<Vec<_>>());
     println!(
         "{method:10} {class:20} n {n:3} mean {:7.3} median {median:7.3} geo {logs:7.3} mm, mse {square:.2e}, \
-         1 sigma {:.3}, 2 sigma {:.3}, open {open}, {seconds:.4} s",
+         1 sigma {:.3}, 2 sigma {:.3}, 68 % {:.2}, 95 % {:.2}, open {open}, {seconds:.4} s",
         mean(&means),
         within(1.0),
-        within(2.0)
+        within(2.0),
+        radii.0,
+        radii.1
     );
 }
 

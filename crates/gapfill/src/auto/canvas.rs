@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeMap, ops::Range};
 
-use locality_ridge::join;
+use locality_ridge::{ensemble::PseudoGap, join};
 use mocap_core::{Choice, CoreError, Estimates, Gap, Take};
 use ndarray::Array2;
 
@@ -77,6 +77,13 @@ impl<'a> Canvas<'a> {
             };
             piece.fill = Some(piece.fill.as_ref().map_or(other.clone(), |own| own.with(&other)));
         }
+    }
+
+    /// The pseudo-gaps that a fill of exactly these frames was tried on.
+    pub fn tried(&self, gap: &Gap) -> Vec<PseudoGap> {
+        let piece = self.pieces.get(&(gap.marker, gap.frames.start));
+        let fill = piece.filter(|piece| piece.frames == gap.frames).and_then(|p| p.fill.as_ref());
+        fill.map_or_else(Vec::new, |fill| fill.tried.iter().map(|(gap, _)| gap.clone()).collect())
     }
 
     /// Mean square error that is expected in a gap, in m².

@@ -18,6 +18,8 @@ pub(super) struct Mixture {
     pub sigma_m: Vec<f64>,
     /// Mean square error in pseudo-gaps in m²; `None` without any.
     pub square_m2: Option<f64>,
+    /// Pseudo-gaps that it was tried on, with the mean square error in each in m².
+    pub tried: Vec<(PseudoGap, f64)>,
     /// Names and weights, of sum 1.
     pub shares: Vec<(&'static str, f64)>,
 }
@@ -61,13 +63,16 @@ impl Mixture {
             positions: (0..frames.len()).map(|k| mixed(&|c| c.positions[k])).collect(),
             sigma_m: frames.clone().map(sigma).collect(),
             square_m2: mean_square(&errors),
+            tried: by_gap(&tried),
             shares: shares(candidates, &weights),
         }
     }
 
-    /// Two fills of the same frames, weighed by their errors as if these had nothing in common.
+    /// Two fills of the same frames, weighed by their errors in the pseudo-gaps that both were tried on, as if
+    /// these errors had nothing in common.
     pub fn with(&self, other: &Self) -> Self {
-        let weight = match (self.square_m2, other.square_m2) {
+        let (own, theirs) = self.in_common(other).unzip();
+        let weight = match (own.or(self.square_m2), theirs.or(other.square_m2)) {
             (Some(a), Some(b)) if a + b > 0.0 => {
                 let (a, b) = (a.powf(-stack::SHARPNESS), b.powf(-stack::SHARPNESS));
                 if a.is_infinite() { 1.0 } else { a / (a + b) }
@@ -89,6 +94,7 @@ impl Mixture {
             square_m2: self.square_m2.map_or(other.square_m2, |a| {
                 Some(weight * a + other.square_m2.map_or(0.0, |b| rest * b))
             }),
+            tried: Vec::new(),
             shares: self
                 .shares
                 .iter()
@@ -97,6 +103,33 @@ impl Mixture {
                 .collect(),
         }
     }
+}
+
+impl Mixture {
+    /// Mean square errors of both in the pseudo-gaps that both were tried on.
+    fn in_common(&self, other: &Self) -> Option<(f64, f64)> {
+        let pairs: Vec<(f64, f64)> = self
+            .tried
+            .iter()
+            .filter_map(|(gap, own)| {
+                let same = |(theirs, _): &&(PseudoGap, f64)| theirs.frames == gap.frames;
+                Some((*own, other.tried.iter().find(same)?.1))
+            })
+            .collect();
+        let n = pairs.len() as f64;
+        let sum = pairs.iter().fold((0.0, 0.0), |sum, pair| (sum.0 + pair.0, sum.1 + pair.1));
+        (!pairs.is_empty()).then_some((sum.0 / n, sum.1 / n))
+    }
+}
+
+fn by_gap(tried: &[Errors<'_>]) -> Vec<(PseudoGap, f64)> {
+    let known = tried.iter().filter(|tried| !tried.values.is_empty());
+    known
+        .map(|tried| {
+            let sum: f64 = tried.values.iter().map(|&e| dot(e, e)).sum();
+            (tried.gap.clone(), sum / tried.values.len() as f64)
+        })
+        .collect()
 }
 
 fn mean_square(errors: &[Vec<[f64; 3]>]) -> Option<f64> {

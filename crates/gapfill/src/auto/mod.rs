@@ -184,7 +184,7 @@ impl Auto {
             let lost = |f: &Mixture| f.square_m2.is_none_or(|e| e > HOPELESS_M * HOPELESS_M);
             long && piece.fill.as_ref().is_none_or(lost)
         });
-        let answers = compete(&base, &open, &self.rivals, costly);
+        let answers = compete(&base, &open, &|gap| canvas.tried(gap), &self.rivals, costly);
         for (gap, answer) in open.iter().zip(answers) {
             if let Some(answer) = answer {
                 canvas.offer(gap, &answer);

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use locality_ridge::ensemble::{Candidate, PseudoGap, Sides, pseudo_gaps};
+use locality_ridge::ensemble::{self, Candidate, PseudoGap, Sides};
 use mocap_core::{CellState, Filled, Gap, GapContext, GapFiller, Mask, Take, geometry::sub};
 
 use super::mixture::{Mixture, Tried};
@@ -25,16 +25,18 @@ struct Open {
 }
 
 /// What the rivals make of each gap, in the order of `gaps`; `None` where none of them has an answer.
+/// `tried` gives the pseudo-gaps of another fill of the gap, to be compared with.
 ///
 /// Each rival fills the take once, with all pseudo-gaps hidden together, so that their number costs
 /// nothing. `costly` asks those that take long, too.
 pub(super) fn compete(
     take: &Take,
     gaps: &[Gap],
+    tried: &dyn Fn(&Gap) -> Vec<PseudoGap>,
     rivals: &[Rival],
     costly: bool,
 ) -> Vec<Option<Mixture>> {
-    let open = group(take, gaps);
+    let open = group(take, gaps, tried);
     let mut hidden = Mask::none(take.frames(), take.marker_count());
     for (frames, open) in &open {
         for marker in missing_in(take, frames) {
@@ -67,7 +69,9 @@ type Groups = BTreeMap<(usize, usize), Open>;
 
 /// Gaps by their frames, each group with pseudo-gaps in which all its markers, and those that they
 /// have to do without, are seen.
-fn group(take: &Take, gaps: &[Gap]) -> Groups {
+///
+/// Those that another fill of the gap was tried on come first.
+fn group(take: &Take, gaps: &[Gap], tried: &dyn Fn(&Gap) -> Vec<PseudoGap>) -> Groups {
     let mut groups = Groups::new();
     for gap in gaps {
         let key = (gap.frames.start, gap.frames.end);
@@ -75,7 +79,12 @@ fn group(take: &Take, gaps: &[Gap]) -> Groups {
             let missing = missing_in(take, &key);
             let all_seen = |t: &usize| missing.iter().all(|&m| take.is_observed(*t, m));
             let seen: Vec<usize> = (0..take.frames()).filter(all_seen).collect();
-            let pseudo_gaps = apart(pseudo_gaps(&seen, gap.len(), sides(take, gap), 0));
+            let mut same = tried(gap);
+            same.retain(|gap| gap.hidden.clone().all(|t| seen.binary_search(&t).is_ok()));
+            let mut pseudo_gaps = apart(same);
+            if pseudo_gaps.len() < 2 {
+                pseudo_gaps = apart(ensemble::pseudo_gaps(&seen, gap.len(), sides(take, gap), 0));
+            }
             let scored = pseudo_gaps.iter().map(|gap| gap.frames.clone().collect()).collect();
             Open { pseudo_gaps, scored }
         });

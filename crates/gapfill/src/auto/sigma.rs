@@ -6,14 +6,22 @@ use mocap_core::geometry::dot;
 /// Correlation times that are tried, in seconds.
 const TIMES_S: [f64; 6] = [0.03, 0.1, 0.3, 1.0, 3.0, 10.0];
 
-/// The root mean square error becomes the radius that holds 68 % of errors by this factor.
-const RADIUS: f64 = 1.0;
+/// The root mean square error becomes the radius that holds 68 % of errors by a factor that is 1 for gaps of
+/// this length.
+const PAR_S: f64 = 0.5;
+
+/// It grows with the length of the gap to this power: the rarer a pose, the longer the gaps that hold one.
+const GROWTH: f64 = 0.15;
+
+/// Bounds of the factor.
+const FACTOR: std::ops::RangeInclusive<f64> = 0.75..=1.15;
 
 /// Errors that spread from the borders as those of a stationary process that is known there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Spread {
     variance_m2: f64,
     tau: f64,
+    rate_hz: f64,
 }
 
 /// Errors of one pseudo-gap with the frames they belong to.
@@ -46,7 +54,7 @@ impl Spread {
                 // Three coordinates each; the constant terms do not matter.
                 let cost = samples.iter().map(|s| s.3 * share(s).ln()).sum::<f64>() / total
                     + variance.max(1e-24).ln();
-                (cost, Self { variance_m2: variance, tau })
+                (cost, Self { variance_m2: variance, tau, rate_hz })
             })
             .filter(|(cost, _)| cost.is_finite())
             .min_by(|a, b| a.0.total_cmp(&b.0))
@@ -56,7 +64,9 @@ impl Spread {
     /// Sigma in metres of frame `t` of a gap.
     pub fn sigma_m(&self, t: usize, gap: &std::ops::Range<usize>, sides: Sides) -> f64 {
         let (before, after) = distances(t, gap, sides);
-        RADIUS * (self.variance_m2 * open_share(before, after, self.tau)).sqrt()
+        let seconds = gap.len() as f64 / self.rate_hz;
+        let factor = (seconds / PAR_S).powf(GROWTH).clamp(*FACTOR.start(), *FACTOR.end());
+        factor * (self.variance_m2 * open_share(before, after, self.tau)).sqrt()
     }
 }
 

@@ -1,6 +1,8 @@
 //! Every method of the registry keeps the contract, and wrong options are refused early.
 #![allow(clippy::unwrap_used)] // tests
 
+mod auto;
+
 use std::ops::ControlFlow;
 
 use gapfill::{Bones, Borders, BuildError, Coordinates, DEFAULT, Joined, METHODS, Options, build};
