@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use lds_kalman::{MissingUpdate, UpdateContext, filler::Columns};
+use lds_kalman::{MissingEntries, MissingUpdate, UpdateContext, filler::Columns};
 use mocap_core::BoneSet;
-use ndarray::{Array2, ArrayView2, ArrayViewMut2};
+use ndarray::{Array2, ArrayView2};
 use rayon::prelude::*;
 
 use crate::{
@@ -93,23 +93,17 @@ impl Frames<'_> {
 }
 
 impl MissingUpdate for HardBones {
-    fn update(&mut self, context: &UpdateContext<'_>, mut filled: ArrayViewMut2<'_, f64>) {
-        let before: Array2<f64> = filled.to_owned();
-        ndarray::Zip::from(&mut filled).and(context.prediction).and(context.mask).for_each(
-            |slot, &predicted, &seen| {
-                if !seen {
-                    *slot = predicted;
-                }
-            },
-        );
+    fn update(&mut self, context: &UpdateContext<'_>, missing: &mut MissingEntries<'_>) {
+        let before: Array2<f64> = missing.values().to_owned();
+        missing.fill_from(context.prediction);
         if context.iteration < self.first_iteration {
             return;
         }
         let (plans, jobs) = self.plans(context.mask);
-        let precision = context.observation_noise.variances(filled.ncols()).mapv(f64::recip);
+        let precision = context.observation_noise.variances(before.ncols()).mapv(f64::recip);
         let mean = precision.mean().unwrap_or(1.0);
         let frames = Frames {
-            predicted: filled.view(),
+            predicted: missing.values(),
             before: before.view(),
             weight: precision.iter().map(|p| p / mean).collect(),
             // Whether bones can be kept depends on what is seen alone: a search that has succeeded
@@ -121,10 +115,9 @@ impl MissingUpdate for HardBones {
             .map(|&(t, plan)| plans[plan].iter().map(|group| frames.solve(t, group)).collect())
             .collect();
         for (&(t, plan), places) in jobs.iter().zip(&solved) {
-            let mut row = filled.row_mut(t);
             for (group, places) in plans[plan].iter().zip(places) {
                 for (k, place) in group.unknown.iter().zip(places.chunks_exact(3)) {
-                    (0..3).for_each(|a| row[3 * k + a] = place[a]);
+                    (0..3).for_each(|a| missing.set(t, 3 * k + a, place[a]));
                 }
             }
         }

@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use lds_kalman::{MissingUpdate, UpdateContext, filler::Columns};
+use lds_kalman::{MissingEntries, MissingUpdate, UpdateContext, filler::Columns};
 use mocap_core::BoneSet;
-use ndarray::{Array2, ArrayView2, ArrayViewMut2, Zip};
+use ndarray::{Array2, ArrayView2};
 use rayon::prelude::*;
 
 use crate::{
@@ -157,21 +157,15 @@ impl SoftBones {
 }
 
 impl MissingUpdate for SoftBones {
-    fn update(&mut self, context: &UpdateContext<'_>, mut filled: ArrayViewMut2<'_, f64>) {
-        Zip::from(&mut filled).and(context.prediction).and(context.mask).for_each(
-            |slot, &predicted, &seen| {
-                if !seen {
-                    *slot = predicted;
-                }
-            },
-        );
+    fn update(&mut self, context: &UpdateContext<'_>, missing: &mut MissingEntries<'_>) {
+        missing.fill_from(context.prediction);
         if context.iteration < FIRST_ITERATION || self.lambda <= 0.0 {
             return;
         }
         let (plans, jobs) = self.plans(context.mask);
-        let variances = context.observation_noise.variances(filled.ncols()).to_vec();
+        let now = missing.values();
+        let variances = context.observation_noise.variances(now.ncols()).to_vec();
         let this = &*self;
-        let now = filled.view();
         let solved: Vec<Vec<f64>> = jobs
             .par_iter()
             .map_init(Scratch::default, |scratch, &(t, plan)| {
@@ -179,9 +173,8 @@ impl MissingUpdate for SoftBones {
             })
             .collect();
         for (&(t, plan), places) in jobs.iter().zip(&solved) {
-            let mut row = filled.row_mut(t);
             for (k, place) in plans[plan].unknown.iter().zip(places.chunks_exact(3)) {
-                (0..3).for_each(|a| row[3 * k + a] = place[a]);
+                (0..3).for_each(|a| missing.set(t, 3 * k + a, place[a]));
             }
         }
     }

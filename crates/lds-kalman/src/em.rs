@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use ndarray::{Array2, ArrayView2, ArrayViewMut2};
+use ndarray::{Array2, ArrayView2};
 
 use crate::{
     covariance::Covariance,
@@ -10,10 +10,11 @@ use crate::{
     error::LdsError,
     inference::{EStep, Inference},
     kernel,
+    missing::MissingEntries,
     model::LdsModel,
     observations::Observations,
     start::{Start, first_model},
-    statistics::{NoiseStructure, gather, maximize, restore_observed},
+    statistics::{NoiseStructure, gather, maximize},
 };
 
 /// How a model is learnt.
@@ -86,7 +87,8 @@ impl EmParams {
 pub struct UpdateContext<'a> {
     /// Iteration, counted from 1.
     pub iteration: usize,
-    /// What the model expects to observe, `G E[z]`, `(T, m)`.
+    /// What the model expects to observe, `G E[z]`, `(T, m)`, in frames that miss an entry; zero in
+    /// the others.
     pub prediction: ArrayView2<'a, f64>,
     /// The observation noise of the model.
     pub observation_noise: &'a Covariance,
@@ -98,12 +100,9 @@ pub struct UpdateContext<'a> {
 ///
 /// Under [`EStep::FilledAsObserved`] it is not asked in the first iteration: what an arbitrary
 /// first model predicts would count as observed from then on.
-///
-/// Whatever an update writes to observed entries is undone.
 pub trait MissingUpdate {
-    /// Writes new values for the missing entries of `filled`, `(T, m)`, which holds the present
-    /// ones.
-    fn update(&mut self, context: &UpdateContext<'_>, filled: ArrayViewMut2<'_, f64>);
+    /// Writes new values over the present ones of the missing entries.
+    fn update(&mut self, context: &UpdateContext<'_>, missing: &mut MissingEntries<'_>);
 
     /// The entries that count as observed under [`EStep::FilledAsObserved`], `(T, m)`, for this
     /// mask; the others are dropped as under [`EStep::Exact`]. `None`: all.
@@ -127,8 +126,8 @@ pub trait MissingUpdate {
 pub struct Prediction;
 
 impl MissingUpdate for Prediction {
-    fn update(&mut self, context: &UpdateContext<'_>, mut filled: ArrayViewMut2<'_, f64>) {
-        filled.assign(&context.prediction);
+    fn update(&mut self, context: &UpdateContext<'_>, missing: &mut MissingEntries<'_>) {
+        missing.fill_from(context.prediction);
     }
 
     fn keeps_likelihood(&self) -> bool {
@@ -299,7 +298,7 @@ impl Loop<'_> {
         let Some(evidence) = &mut self.evidence else {
             return pass.run(dynamics, self.observations, filled.view());
         };
-        evidence.set_values(filled.view());
+        evidence.set_values(filled.view(), self.observations.gap_frames());
         pass.run(dynamics, evidence, evidence.values())
     }
 
@@ -307,15 +306,15 @@ impl Loop<'_> {
         if self.trace.len() == 1 && self.params.e_step == EStep::FilledAsObserved {
             return;
         }
-        self.pass.predict(&self.dynamics, &mut self.prediction);
+        let frames = self.observations.gap_frames();
+        self.pass.predict(&self.dynamics, frames, &mut self.prediction);
         let context = UpdateContext {
             iteration: self.trace.len(),
             prediction: self.prediction.view(),
             observation_noise: self.model.observation_noise(),
             mask: self.observations.mask(),
         };
-        hook.update(&context, self.filled.view_mut());
-        restore_observed(self.observations, &mut self.filled);
+        hook.update(&context, &mut MissingEntries::new(self.observations, self.filled.view_mut()));
     }
 
     fn stands_still(&self) -> bool {

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use ndarray::{Array2, ArrayView2, linalg::general_mat_mul, s};
+use ndarray::{Array1, Array2, ArrayView2};
 
 use crate::{
     backward::Backward,
@@ -10,6 +10,7 @@ use crate::{
     forward::{Forward, STATIONARY},
     kernel,
     observations::Observations,
+    panel,
 };
 
 /// How missing entries are treated when the hidden states are estimated.
@@ -49,12 +50,11 @@ pub(crate) struct Inference {
     pub(crate) predicted: Array2<f64>,
     pub(crate) filtered: Array2<f64>,
     pub(crate) smoothed: Array2<f64>,
-    residual: Array2<f64>,
 }
 
 impl Inference {
     pub(crate) fn new(observations: &Observations, n: usize, e_step: EStep) -> Self {
-        let (frames, m) = observations.values().dim();
+        let frames = observations.frames();
         let complete = vec![observations.patterns().len(); frames];
         let by_mask = observations.pattern_of().to_vec();
         let (mean_pattern, covariance_pattern) = match e_step {
@@ -77,7 +77,6 @@ impl Inference {
             predicted: states(),
             filtered: states(),
             smoothed: states(),
-            residual: Array2::zeros((frames, m)),
         }
     }
 
@@ -112,78 +111,134 @@ impl Inference {
         self.gather_information(dynamics, observations);
         let Self { forward, information, covariance_pattern, stationary, .. } = self;
         forward.run(dynamics, information, covariance_pattern, *stationary).then_some(())?;
-        general_mat_mul(1.0, &values, &dynamics.weighted_emission, 0.0, &mut self.weighted);
+        let m = observations.dimensions();
+        let weighted = flat_mut(&mut self.weighted);
+        panel::project(flat_view(&values), m, &dynamics.weighted_emission, self.n, weighted);
         let explained = kernel::fast(self.n, FilterMeans { pass: self, dynamics });
         let log_likelihood = self.log_likelihood(dynamics, observations, values, explained);
         log_likelihood.is_finite().then_some(log_likelihood)
     }
 
+    /// The information of each pattern of the mask, then that of a frame that observes all.
     fn gather_information(&mut self, dynamics: &Dynamics, observations: &Observations) {
+        let size = self.n * self.n;
         self.information.clear();
         for pattern in observations.patterns() {
-            dynamics.add_information(pattern, &mut self.information);
+            if self.e_step == EStep::FilledAsObserved {
+                // Never read; the blocks stand where the pattern's number says.
+                self.information.resize(self.information.len() + size, 0.0);
+            } else {
+                dynamics.add_information(&pattern.observed, &mut self.information);
+            }
         }
-        dynamics.add_complete_information(&mut self.information);
+        let all: Vec<usize> = (0..observations.dimensions()).collect();
+        dynamics.add_information(&all, &mut self.information);
     }
 
-    /// The log-likelihood from the innovations, with what the states explain taken off.
+    /// The log-likelihood of the entries that count, from the innovations.
     fn log_likelihood(
-        &mut self,
+        &self,
         dynamics: &Dynamics,
         observations: &Observations,
         values: ArrayView2<'_, f64>,
-        explained: f64,
+        explained: Explained,
     ) -> f64 {
-        self.residual.assign(&values);
-        general_mat_mul(-1.0, &self.predicted, &dynamics.emission.t(), 1.0, &mut self.residual);
-        let precision = dynamics.noise.mapv(f64::recip).to_vec();
-        let log_noise = dynamics.noise.mapv(|r| (TAU * r).ln()).to_vec();
-        let m = precision.len();
-        let all_count = self.e_step != EStep::Exact;
-        let all_seen = self.e_step == EStep::FilledAsObserved;
-        let total_log_noise: f64 = log_noise.iter().sum();
-        let mut sum = -explained;
-        let rows = flat(&self.residual).chunks_exact(m);
-        for ((row, &pattern), &step) in
-            rows.zip(observations.pattern_of()).zip(self.forward.step_of())
-        {
-            let pattern = &observations.patterns()[pattern];
-            sum += self.forward.log_determinant(step);
-            sum += if all_seen || pattern.complete {
-                row.iter().zip(&precision).map(|(e, p)| e * e * p).sum::<f64>()
-            } else {
-                pattern.observed.iter().map(|&j| row[j] * row[j] * precision[j]).sum()
-            };
-            sum += if all_count || pattern.complete {
-                total_log_noise
-            } else {
-                pattern.observed.iter().map(|&j| log_noise[j]).sum()
-            };
+        let precision = dynamics.noise.mapv(f64::recip);
+        let squares = match self.e_step {
+            EStep::FilledAsObserved => observations.squares_with(values),
+            EStep::Exact | EStep::Dynammo => observations.squares().clone(),
+        };
+        let total = squares.dot(&precision);
+        let mut quadratic = total - explained.by_prediction;
+        if total > CANCELLED * quadratic {
+            quadratic = self.squared_residuals(dynamics, observations, values, &precision);
+        }
+        let log_noise = dynamics.noise.mapv(|r| (TAU * r).ln());
+        let of_all = log_noise.sum();
+        let by_pattern: Vec<f64> = observations
+            .patterns()
+            .iter()
+            .map(|pattern| match self.e_step {
+                EStep::Exact => pattern.observed.iter().map(|&j| log_noise[j]).sum(),
+                EStep::FilledAsObserved | EStep::Dynammo => of_all,
+            })
+            .collect();
+        let mut sum = quadratic - explained.by_correction;
+        for (&pattern, &step) in observations.pattern_of().iter().zip(self.forward.step_of()) {
+            sum += self.forward.log_determinant(step) + by_pattern[pattern];
         }
         -0.5 * sum
     }
 
-    /// `G E[z]`, `(T, m)`, into `out`.
-    pub(crate) fn predict(&self, dynamics: &Dynamics, out: &mut Array2<f64>) {
-        general_mat_mul(1.0, &self.smoothed, &dynamics.emission.t(), 0.0, out);
+    /// `Σ eᵀ Σ⁻¹ e` over the entries that count, where `e` is what the prediction misses.
+    fn squared_residuals(
+        &self,
+        dynamics: &Dynamics,
+        observations: &Observations,
+        values: ArrayView2<'_, f64>,
+        precision: &Array1<f64>,
+    ) -> f64 {
+        let (n, m) = (self.n, observations.dimensions());
+        let mut expected = vec![0.0; m];
+        let mut sum = 0.0;
+        for ((t, row), state) in values.rows().into_iter().enumerate().zip(self.predicted.rows()) {
+            let state = state.to_slice().expect("buffers are made in standard layout");
+            panel::project(state, n, &dynamics.emission_transposed, m, &mut expected);
+            let weighted = |j: usize| precision[j] * (row[j] - expected[j]).powi(2);
+            let pattern = &observations.patterns()[observations.pattern_of()[t]];
+            sum += match self.e_step {
+                EStep::FilledAsObserved => (0..m).map(weighted).sum::<f64>(),
+                _ => pattern.observed.iter().map(|&j| weighted(j)).sum(),
+            };
+        }
+        sum
+    }
+
+    /// `G E[z]`, `(T, m)`, into the rows of `out` of these frames.
+    pub(crate) fn predict(&self, dynamics: &Dynamics, frames: &[usize], out: &mut Array2<f64>) {
+        let (n, m) = (self.n, out.ncols());
+        let (states, out) = (flat(&self.smoothed), flat_mut(out));
+        for run in frames.chunk_by(|a, b| a + 1 == *b) {
+            let (first, end) = (run[0], run[0] + run.len());
+            let emission = &dynamics.emission_transposed;
+            panel::project(
+                &states[first * n..end * n],
+                n,
+                emission,
+                m,
+                &mut out[first * m..end * m],
+            );
+        }
     }
 
     /// `Σ E[z zᵀ]` and `Σ E[z[t+1] z[t]ᵀ]`.
     pub(crate) fn second_moments(&self) -> (Array2<f64>, Array2<f64>) {
-        let last = self.frames - 1;
-        let mut same = self.smoothed.t().dot(&self.smoothed).as_standard_layout().into_owned();
+        let (n, last) = (self.n, self.frames - 1);
+        let states = flat(&self.smoothed);
+        let (mut same, mut lag) = (Array2::zeros((n, n)), Array2::zeros((n, n)));
+        panel::correlate(states, n, states, n, flat_mut(&mut same));
         self.backward.add_covariances(0..self.frames, flat_mut(&mut same));
-        let (later, earlier) =
-            (self.smoothed.slice(s![1.., ..]), self.smoothed.slice(s![..last, ..]));
-        let mut lag = later.t().dot(&earlier).as_standard_layout().into_owned();
+        panel::correlate(&states[n..], n, &states[..last * n], n, flat_mut(&mut lag));
         self.backward.add_lag_ones(0..last, flat_mut(&mut lag));
         (same, lag)
+    }
+
+    /// `Σ x E[z]ᵀ`, `(m, H)`, for data `(T, m)`.
+    pub(crate) fn cross_moment(&self, data: ArrayView2<'_, f64>) -> Array2<f64> {
+        let (n, m) = (self.n, data.ncols());
+        let mut cross = Array2::zeros((m, n));
+        panel::correlate(flat_view(&data), m, flat(&self.smoothed), n, flat_mut(&mut cross));
+        cross
     }
 
     #[cfg(test)]
     pub(crate) fn set_stationary(&mut self, tolerance: f64) {
         self.stationary = tolerance;
     }
+}
+
+fn flat_view<'a>(array: &'a ArrayView2<'_, f64>) -> &'a [f64] {
+    array.as_slice().expect("observations and fills are kept in standard layout")
 }
 
 fn flat(array: &Array2<f64>) -> &[f64] {
@@ -194,7 +249,20 @@ fn flat_mut(array: &mut Array2<f64>) -> &mut [f64] {
     array.as_slice_mut().expect("buffers are made in standard layout")
 }
 
-/// The means of the filter; answers the part of the squared innovations that the states explain.
+/// The log-likelihood takes the squared innovations as the difference of two sums, unless the larger
+/// one is this many times the difference: then so many digits are lost that they are computed.
+const CANCELLED: f64 = 1e6;
+
+/// Parts of the squared observations, in units of their noise.
+#[derive(Debug, Clone, Copy, Default)]
+struct Explained {
+    /// `Σ xᵀ Σ⁻¹ x − (x − G μ)ᵀ Σ⁻¹ (x − G μ)` for the predicted states `μ`.
+    by_prediction: f64,
+    /// What the correction of the states by the innovations takes off.
+    by_correction: f64,
+}
+
+/// The means of the filter.
 ///
 /// Implements [Li10] Eq. (17) and (21) in the information form.
 struct FilterMeans<'a> {
@@ -203,15 +271,15 @@ struct FilterMeans<'a> {
 }
 
 impl kernel::Job for FilterMeans<'_> {
-    type Output = f64;
+    type Output = Explained;
 
     #[allow(clippy::inline_always, reason = "the job takes on the vectors of its caller")]
     #[inline(always)]
-    fn run(self, n: usize) -> f64 {
+    fn run(self, n: usize) -> Explained {
         let Self { pass, dynamics } = self;
         let size = n * n;
         let (mut innovation, mut correction) = (vec![0.0; n], vec![0.0; n]);
-        let mut explained = 0.0;
+        let mut explained = Explained::default();
         let weighted = flat(&pass.weighted);
         let predicted = flat_mut(&mut pass.predicted);
         let filtered = flat_mut(&mut pass.filtered);
@@ -226,10 +294,13 @@ impl kernel::Job for FilterMeans<'_> {
             }
             let information = &pass.information[pass.mean_pattern[t] * size..][..size];
             kernel::apply(information, prediction, &mut innovation, n);
-            innovation.iter_mut().zip(&weighted[now.clone()]).for_each(|(i, b)| *i = b - *i);
+            for ((i, w), p) in innovation.iter_mut().zip(&weighted[now.clone()]).zip(&*prediction) {
+                *i = w - *i;
+                explained.by_prediction += p * (w + *i);
+            }
             let covariance = pass.forward.filtered(pass.forward.step_of()[t]);
             kernel::apply(covariance, &innovation, &mut correction, n);
-            explained += kernel::dot(&innovation, &correction);
+            explained.by_correction += kernel::dot(&innovation, &correction);
             for ((f, p), c) in filtered[now].iter_mut().zip(prediction).zip(&correction) {
                 *f = *p + c;
             }

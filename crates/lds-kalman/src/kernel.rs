@@ -39,29 +39,53 @@ impl<J: Job> pulp::WithSimd for Dispatched<J> {
     }
 }
 
+/// Rows computed together: four vectors a row are too few sums to hide the latency of an addition.
+const ROWS: usize = 2;
+
 /// `out = A · B`, where element `(i, k)` of `A` lies at `i * row + k * column`.
 #[inline(always)]
 fn multiply_strided(a: &[f64], row: usize, column: usize, b: &[f64], out: &mut [f64], n: usize) {
     let (a, b, out) = (&a[..n * n], &b[..n * n], &mut out[..n * n]);
     let blocked = n - n % BLOCK;
-    for i in 0..n {
-        for start in (0..blocked).step_by(BLOCK) {
-            let mut sum = [0.0; BLOCK];
+    let paired = n - n % ROWS;
+    for start in (0..blocked).step_by(BLOCK) {
+        for i in (0..paired).step_by(ROWS) {
+            let mut sums = [[0.0; BLOCK]; ROWS];
             for k in 0..n {
-                let factor = a[i * row + k * column];
                 let b_row = &b[k * n + start..][..BLOCK];
-                for c in 0..BLOCK {
-                    sum[c] += factor * b_row[c];
-                }
+                let factors: [f64; ROWS] = std::array::from_fn(|r| a[(i + r) * row + k * column]);
+                add_outer(&mut sums, &factors, b_row);
             }
-            out[i * n + start..][..BLOCK].copy_from_slice(&sum);
+            for (r, sum) in sums.iter().enumerate() {
+                out[(i + r) * n + start..][..BLOCK].copy_from_slice(sum);
+            }
         }
-        if blocked < n {
+        for i in paired..n {
+            let mut sum = [[0.0; BLOCK]];
+            for k in 0..n {
+                add_outer(&mut sum, &[a[i * row + k * column]], &b[k * n + start..][..BLOCK]);
+            }
+            out[i * n + start..][..BLOCK].copy_from_slice(&sum[0]);
+        }
+    }
+    if blocked < n {
+        for i in 0..n {
             let rest = &mut out[i * n + blocked..(i + 1) * n];
             rest.fill(0.0);
             for k in 0..n {
                 add_scaled(rest, a[i * row + k * column], &b[k * n + blocked..(k + 1) * n]);
             }
+        }
+    }
+}
+
+/// Adds each factor times the row to its sums, which stay in registers.
+#[inline(always)]
+fn add_outer<const R: usize>(sums: &mut [[f64; BLOCK]; R], factors: &[f64; R], row: &[f64]) {
+    let row = &row[..BLOCK];
+    for (sum, factor) in sums.iter_mut().zip(factors) {
+        for c in 0..BLOCK {
+            sum[c] += factor * row[c];
         }
     }
 }

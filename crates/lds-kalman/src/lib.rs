@@ -9,8 +9,10 @@ pub mod filler;
 mod forward;
 mod inference;
 mod kernel;
+mod missing;
 mod model;
 mod observations;
+mod panel;
 mod smoother;
 mod start;
 mod statistics;
@@ -21,6 +23,7 @@ pub use em::{
 };
 pub use error::LdsError;
 pub use inference::EStep;
+pub use missing::MissingEntries;
 pub use model::{LdsModel, LdsParts, Sample};
 pub use observations::Observations;
 pub use smoother::{Filtered, Smoothed, filter, smooth};

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use ndarray::{Array2, ArrayView2};
+use ndarray::{Array1, Array2, ArrayView2};
 
 use crate::error::LdsError;
 
@@ -17,6 +17,9 @@ pub struct Observations {
     patterns: Vec<Pattern>,
     pattern_of: Vec<usize>,
     gap_groups: Vec<GapGroup>,
+    gap_frames: Vec<usize>,
+    /// Sums of the squares of the observed values, `(m)`.
+    squares: Array1<f64>,
     observed: usize,
 }
 
@@ -24,6 +27,7 @@ pub struct Observations {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Pattern {
     pub(crate) observed: Vec<usize>,
+    pub(crate) missing: Vec<usize>,
     pub(crate) complete: bool,
 }
 
@@ -69,12 +73,15 @@ impl Observations {
             }
         }
         let (patterns, pattern_of) = patterns(mask);
+        let gap_frames = (0..frames).filter(|&t| !patterns[pattern_of[t]].complete).collect();
         Ok(Self {
+            squares: column_squares(&clean),
             values: clean,
             mask: mask.to_owned(),
             patterns,
             pattern_of,
             gap_groups: gap_groups(mask),
+            gap_frames,
             observed: mask.iter().filter(|&&seen| seen).count(),
         })
     }
@@ -118,12 +125,35 @@ impl Observations {
         self.mask.view()
     }
 
-    /// Takes new values for the observed entries, `(T, m)`.
-    pub(crate) fn set_values(&mut self, values: ArrayView2<'_, f64>) {
-        ndarray::Zip::from(&mut self.values)
-            .and(values)
-            .and(&self.mask)
-            .for_each(|slot, &value, &seen| *slot = if seen { value } else { 0.0 });
+    /// Takes new values for the observed entries of some frames from a matrix `(T, m)`.
+    pub(crate) fn set_values(&mut self, values: ArrayView2<'_, f64>, frames: &[usize]) {
+        for &t in frames {
+            for &j in &self.patterns[self.pattern_of[t]].observed {
+                self.values[(t, j)] = values[(t, j)];
+            }
+        }
+        self.squares = column_squares(&self.values);
+    }
+
+    /// Sums of the squares of the observed values, `(m)`.
+    pub(crate) fn squares(&self) -> &Array1<f64> {
+        &self.squares
+    }
+
+    /// Sums of the squares of a fill of all entries `(T, m)`, `(m)`.
+    pub(crate) fn squares_with(&self, filled: ArrayView2<'_, f64>) -> Array1<f64> {
+        let mut squares = self.squares.clone();
+        for GapGroup { dimensions, frames } in &self.gap_groups {
+            for &j in dimensions {
+                squares[j] += frames.iter().map(|&t| filled[(t, j)].powi(2)).sum::<f64>();
+            }
+        }
+        squares
+    }
+
+    /// The frames that miss an entry, in order.
+    pub(crate) fn gap_frames(&self) -> &[usize] {
+        &self.gap_frames
     }
 
     pub(crate) fn patterns(&self) -> &[Pattern] {
@@ -167,6 +197,14 @@ impl Observations {
     }
 }
 
+fn column_squares(values: &Array2<f64>) -> Array1<f64> {
+    let mut squares = Array1::zeros(values.ncols());
+    for row in values.rows() {
+        ndarray::Zip::from(&mut squares).and(row).for_each(|s: &mut f64, &x| *s += x * x);
+    }
+    squares
+}
+
 fn patterns(mask: ArrayView2<'_, bool>) -> (Vec<Pattern>, Vec<usize>) {
     let mut known: HashMap<Vec<bool>, usize> = HashMap::new();
     let mut patterns = Vec::new();
@@ -175,9 +213,9 @@ fn patterns(mask: ArrayView2<'_, bool>) -> (Vec<Pattern>, Vec<usize>) {
         .into_iter()
         .map(|row| {
             *known.entry(row.to_vec()).or_insert_with(|| {
-                let observed: Vec<usize> = (0..row.len()).filter(|&j| row[j]).collect();
-                let complete = observed.len() == row.len();
-                patterns.push(Pattern { observed, complete });
+                let (observed, missing): (Vec<usize>, _) = (0..row.len()).partition(|&j| row[j]);
+                let complete = missing.is_empty();
+                patterns.push(Pattern { observed, missing, complete });
                 patterns.len() - 1
             })
         })

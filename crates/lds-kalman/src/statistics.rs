@@ -8,6 +8,7 @@ use crate::{
     error::LdsError,
     inference::{EStep, Inference},
     kernel,
+    missing::MissingEntries,
     model::{LdsModel, LdsParts},
     observations::Observations,
     smoother::check_dimensions,
@@ -83,9 +84,10 @@ pub fn e_step(model: &LdsModel, observations: &Observations) -> Result<Statistic
     pass.run(&dynamics, observations, observations.values())
         .ok_or(LdsError::Breakdown { iteration: 1 })?;
     let mut filled = Array2::zeros(observations.values().dim());
-    pass.predict(&dynamics, &mut filled);
-    restore_observed(observations, &mut filled);
-    Ok(gather(&pass, &dynamics, observations, filled.view()))
+    pass.predict(&dynamics, observations.gap_frames(), &mut filled);
+    let mut data = observations.values().to_owned();
+    MissingEntries::new(observations, data.view_mut()).fill_from(filled.view());
+    Ok(gather(&pass, &dynamics, observations, data.view()))
 }
 
 /// The model that maximises the expected complete log-likelihood under the given structure.
@@ -106,20 +108,6 @@ pub fn m_step(statistics: &Statistics, structure: &NoiseStructure) -> Result<Lds
     maximize(statistics, structure).ok_or(LdsError::NotPositiveDefinite { what: "state moment" })
 }
 
-/// Copies the observed entries over whatever a fill holds there.
-pub(crate) fn restore_observed(observations: &Observations, filled: &mut Array2<f64>) {
-    let observed = observations.values();
-    let rows = filled.rows_mut().into_iter().zip(observed.rows());
-    for ((mut row, values), &pattern) in rows.zip(observations.pattern_of()) {
-        let pattern = &observations.patterns()[pattern];
-        if pattern.complete {
-            row.assign(&values);
-        } else {
-            pattern.observed.iter().for_each(|&j| row[j] = values[j]);
-        }
-    }
-}
-
 /// Collects the statistics of a finished pass. Under the exact E-step the variance of missing
 /// entries is added; otherwise the fills count as data, as published.
 pub(crate) fn gather(
@@ -131,11 +119,8 @@ pub(crate) fn gather(
     let n = dynamics.n;
     let frames = observations.frames();
     let (states, lag_one) = pass.second_moments();
-    let mut cross = filled.t().dot(&pass.smoothed);
-    let mut squares = Array1::<f64>::zeros(filled.ncols());
-    for row in filled.rows() {
-        ndarray::Zip::from(&mut squares).and(row).for_each(|s, &x| *s += x * x);
-    }
+    let mut cross = pass.cross_moment(filled);
+    let mut squares = observations.squares_with(filled);
     if pass.e_step() == EStep::Exact {
         for group in observations.gap_groups() {
             let mut sum = vec![0.0; n * n];
@@ -219,10 +204,30 @@ pub(crate) fn solve_symmetric(left: &Array2<f64>, right: &Array2<f64>) -> Option
     let (rows, n) = right.dim();
     let mut symmetric: Vec<f64> = left.iter().copied().collect();
     kernel::symmetrize(&mut symmetric, n);
-    let mut factor = vec![0.0; n * n];
-    kernel::cholesky(&symmetric, &mut factor, n).then_some(())?;
     let mut solution: Vec<f64> = right.t().iter().copied().collect();
-    kernel::solve_cholesky(&factor, &mut solution, n, rows);
+    kernel::fast(n, Solve { symmetric, solution: &mut solution, rows }).then_some(())?;
     let transposed = Array2::from_shape_vec((n, rows), solution).ok()?;
     Some(transposed.t().as_standard_layout().into_owned())
+}
+
+/// Solves for the right-hand sides in the columns of `solution`; `false` without a Cholesky factor.
+struct Solve<'a> {
+    symmetric: Vec<f64>,
+    solution: &'a mut [f64],
+    rows: usize,
+}
+
+impl kernel::Job for Solve<'_> {
+    type Output = bool;
+
+    #[allow(clippy::inline_always, reason = "the job takes on the vectors of its caller")]
+    #[inline(always)]
+    fn run(self, n: usize) -> bool {
+        let mut factor = vec![0.0; n * n];
+        let found = kernel::cholesky(&self.symmetric, &mut factor, n);
+        if found {
+            kernel::solve_cholesky(&factor, self.solution, n, self.rows);
+        }
+        found
+    }
 }

@@ -3,10 +3,10 @@
 use std::ops::ControlFlow;
 
 use lds_kalman::{
-    CovarianceStructure, EStep, EmParams, Fit, LdsError, MissingUpdate, NoiseStructure,
-    Observations, Prediction, Start, Termination, UpdateContext, fit_em,
+    CovarianceStructure, EStep, EmParams, Fit, LdsError, MissingEntries, MissingUpdate,
+    NoiseStructure, Observations, Prediction, Start, Termination, UpdateContext, fit_em,
 };
-use ndarray::{Array2, ArrayViewMut2};
+use ndarray::Array2;
 
 use crate::support::{Random, problem};
 
@@ -150,9 +150,12 @@ fn a_loose_tolerance_converges_and_a_strict_one_meets_the_limit() {
 struct Vandal;
 
 impl MissingUpdate for Vandal {
-    fn update(&mut self, context: &UpdateContext<'_>, mut filled: ArrayViewMut2<'_, f64>) {
+    fn update(&mut self, context: &UpdateContext<'_>, missing: &mut MissingEntries<'_>) {
         assert_eq!(context.prediction.dim(), context.mask.dim());
-        filled.fill(7.0);
+        missing.fill_from(Array2::from_elem(context.mask.dim(), 7.0).view());
+        for t in 0..context.mask.nrows() {
+            missing.set(t, 0, -1.0);
+        }
     }
 }
 
