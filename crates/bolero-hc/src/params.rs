@@ -49,10 +49,9 @@ pub struct BoleroHcParams {
 }
 
 impl Default for BoleroHcParams {
-    /// Fills count as observed, from the data's own subspace.
+    /// Exact EM from the data's own subspace.
     fn default() -> Self {
-        let model =
-            LdsFillerParams { e_step: EStep::FilledAsObserved, ..LdsFillerParams::default() };
+        let model = LdsFillerParams::default();
         Self { model, first_iteration: 11, bones: Bones::default() }
     }
 }

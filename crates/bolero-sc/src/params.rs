@@ -1,4 +1,4 @@
-use lds_kalman::{EStep, Start, filler::LdsFillerParams};
+use lds_kalman::{EStep, filler::LdsFillerParams};
 use mocap_core::{BoneRule, BoneSet, FillError, MarkerKnowledge, RigidPairs, Take};
 
 use crate::solver::Solver;
@@ -76,11 +76,10 @@ pub struct BoleroScParams {
 }
 
 impl Default for BoleroScParams {
-    /// E-step, start and weight of [Li10], with the centroid as origin.
+    /// Exact EM from the data's own subspace, with the weight of [Li10].
     fn default() -> Self {
-        let (e_step, start) = (EStep::FilledAsObserved, Start::Random);
         Self {
-            model: LdsFillerParams { e_step, start, ..LdsFillerParams::default() },
+            model: LdsFillerParams::default(),
             lambda: 1e6,
             bones: Bones::Auto,
             untied: Untied::default(),

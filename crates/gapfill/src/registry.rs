@@ -227,7 +227,7 @@ fn model(defaults: LdsFillerParams, options: &Options) -> LdsFillerParams {
         Some(Coordinates::Body) => filler::Coordinates::Body(Arc::new(facing(&options.known))),
     };
     LdsFillerParams {
-        hidden: options.hidden.or(defaults.hidden),
+        hidden: options.hidden.map_or(defaults.hidden, filler::Hidden::Exactly),
         iterations: options.iterations.unwrap_or(defaults.iterations),
         start: options.start.unwrap_or(defaults.start),
         seed: options.seed,

@@ -223,7 +223,7 @@ pub fn fit_em(
     };
     // What a random transition predicts grows beyond all bounds in frames without evidence.
     let start = if evidence.is_some() { Start::Subspace } else { params.start };
-    let model = first_model(start, filled.view(), *hidden, *seed, structure)?;
+    let model = first_model(start, observations, *hidden, *seed, structure)?;
     let mut loop_state = Loop {
         observations,
         evidence,

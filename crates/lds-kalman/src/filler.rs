@@ -9,18 +9,24 @@ use mocap_core::{
 use ndarray::{Array2, Array3};
 
 use crate::{
-    EStep, EmParams, Fit, LdsError, MissingUpdate, NoiseStructure, Observations, Prediction, Start,
+    CovarianceStructure, EStep, EmParams, Fit, LdsError, MissingUpdate, NoiseStructure, Observations, Prediction, Start,
     Termination, fit_em,
 };
 
-/// Hidden dimensions where the user asks for none, as in [Li10] §4.
-const DEFAULT_HIDDEN: usize = 16;
+/// Hidden dimensions of the published methods, [Li10] §4.
+const PUBLISHED_HIDDEN: usize = 16;
+
+/// Hidden dimensions where the user asks for none.
+const DEFAULT_HIDDEN: usize = 32;
+
+/// Frames for each hidden dimension beyond the published ones.
+const FRAMES_EACH: usize = 6;
 
 /// The coordinates in which a model is learnt.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum Coordinates {
-    /// Relative to the body where a take shows the reference markers of the CMU marker set, else
-    /// as recorded.
+    /// Relative to the body where every frame shows reference markers of the CMU marker set, else
+    /// as recorded: where the body is lost, its motion through the room is the surest thing to go by.
     #[default]
     Auto,
     /// As recorded.
@@ -37,6 +43,7 @@ impl Coordinates {
             Self::Body(known) => body_frame(take, known).map(Some),
             Self::Auto => match body_frame(take, &MarkerKnowledge::cmu_41()) {
                 Err(FillError::Core(CoreError::NoBodyFrame)) => Ok(None),
+                Ok(frame) if frame.bridged() > 0 => Ok(None),
                 found => found.map(Some),
             },
         }
@@ -60,13 +67,39 @@ pub enum Origin {
     Centroid,
 }
 
+/// How many hidden dimensions a model has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Hidden {
+    /// So many, from 1 to three per seen marker; a take with fewer coordinates is refused.
+    Exactly(usize),
+    /// So many or fewer, where the take has fewer coordinates or is so short that a large model would
+    /// learn its noise: at most one in six frames beyond the first 16, and one in two of those.
+    AtMost(usize),
+}
+
+impl Hidden {
+    fn most(self) -> usize {
+        match self {
+            Self::Exactly(hidden) | Self::AtMost(hidden) => hidden,
+        }
+    }
+
+    fn of(self, observations: &Observations) -> usize {
+        let frames = observations.frames();
+        let told = (frames / FRAMES_EACH).max(PUBLISHED_HIDDEN.min(frames / 2)).max(1);
+        match self {
+            Self::Exactly(hidden) => hidden,
+            Self::AtMost(hidden) => hidden.min(told).min(observations.dimensions()),
+        }
+    }
+}
+
 /// How [`LdsFiller`] learns and fills.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LdsFillerParams {
-    /// Hidden dimensions, from 1 to three per seen marker. `None`: 16, or fewer where the take
-    /// has fewer coordinates or is shorter than 32 frames.
-    pub hidden: Option<usize>,
-    /// Most EM iterations, at least 1. [Li10]: 100 to 200.
+    /// Hidden dimensions. Default: at most 32. [Li10]: 16.
+    pub hidden: Hidden,
+    /// Most EM iterations, at least 1. Default 20; more learn the noise of the take. [Li10]: 100 to 200.
     pub iterations: usize,
     /// Stops when the log-likelihood changes by at most this many nats per observed coordinate;
     /// 0 or more.
@@ -89,13 +122,16 @@ impl Default for LdsFillerParams {
     /// Exact EM from the data's own subspace.
     fn default() -> Self {
         Self {
-            hidden: None,
-            iterations: 100,
+            hidden: Hidden::AtMost(DEFAULT_HIDDEN),
+            iterations: 20,
             tolerance: 1e-6,
             seed: 0,
             start: Start::Subspace,
             e_step: EStep::Exact,
-            structure: NoiseStructure::default(),
+            structure: NoiseStructure {
+                state: CovarianceStructure::Diagonal,
+                ..NoiseStructure::default()
+            },
             origin: Origin::Centroid,
             coordinates: Coordinates::Auto,
         }
@@ -103,10 +139,17 @@ impl Default for LdsFillerParams {
 }
 
 impl LdsFillerParams {
-    /// `DynaMMo`'s E-step, with start and origin as in the default.
+    /// `DynaMMo` with the hidden dimensions, iterations and covariances of [Li10] §4, but with start and
+    /// origin as in the default.
     #[must_use]
     pub fn dynammo() -> Self {
-        Self { e_step: EStep::Dynammo, ..Self::default() }
+        Self {
+            hidden: Hidden::AtMost(PUBLISHED_HIDDEN),
+            iterations: 100,
+            e_step: EStep::Dynammo,
+            structure: NoiseStructure::default(),
+            ..Self::default()
+        }
     }
 
     /// `DynaMMo` with all settings of [Li10] §4: a random start, body-local coordinates of the CMU
@@ -132,7 +175,7 @@ impl LdsFillerParams {
             let rule = "at least 1";
             if value == 0 { Err(FillError::Parameter { field, value: 0.0, rule }) } else { Ok(()) }
         };
-        at_least_one("hidden", self.hidden.unwrap_or(DEFAULT_HIDDEN))?;
+        at_least_one("hidden", self.hidden.most())?;
         at_least_one("iterations", self.iterations)?;
         if !(self.tolerance.is_finite() && self.tolerance >= 0.0) {
             let (field, value) = ("tolerance", self.tolerance);
@@ -142,9 +185,8 @@ impl LdsFillerParams {
     }
 
     fn em(&self, observations: &Observations) -> EmParams {
-        let fitting = observations.dimensions().min((observations.frames() / 2).max(1));
         EmParams {
-            hidden: self.hidden.unwrap_or(DEFAULT_HIDDEN.min(fitting)),
+            hidden: self.hidden.of(observations),
             iterations: self.iterations,
             tolerance: self.tolerance,
             seed: self.seed,

@@ -16,6 +16,7 @@ mod panel;
 mod smoother;
 mod start;
 mod statistics;
+mod subspace;
 
 pub use covariance::{Covariance, CovarianceStructure};
 pub use em::{

@@ -164,6 +164,18 @@ impl Observations {
         &self.pattern_of
     }
 
+    /// Dimensions that share their mask.
+    pub(crate) fn columns_by_mask(&self) -> Vec<Vec<usize>> {
+        let mut complete: Vec<usize> = (0..self.dimensions()).collect();
+        let mut groups: Vec<Vec<usize>> =
+            self.gap_groups.iter().map(|group| group.dimensions.clone()).collect();
+        complete.retain(|j| !groups.iter().any(|group| group.contains(j)));
+        if !complete.is_empty() {
+            groups.push(complete);
+        }
+        groups
+    }
+
     pub(crate) fn gap_groups(&self) -> &[GapGroup] {
         &self.gap_groups
     }

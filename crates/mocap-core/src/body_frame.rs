@@ -89,7 +89,7 @@ impl BodyMarkers {
 ///
 /// Frames that show all reference markers define the frame directly. Frames that show some are
 /// fitted to the mean shape of the markers they show, and frames that show fewer than two are
-/// interpolated. Heights stay as they are.
+/// interpolated at the pace of the frames beside them. Heights stay as they are.
 ///
 /// Deviates from [Li10] §4 as its authors computed it: they used the complete motion, hidden
 /// reference markers included.
@@ -97,6 +97,7 @@ impl BodyMarkers {
 pub struct BodyFrame {
     up: UpAxis,
     placements: Vec<Placement>,
+    bridged: usize,
 }
 
 /// Place and heading in the horizontal plane.
@@ -130,7 +131,15 @@ impl BodyFrame {
             .map(|(t, placement)| placement.or_else(|| planar.fit(t, &shape)))
             .collect();
         let placements = interpolate(&placed).ok_or(CoreError::NoBodyFrame)?;
-        Ok(Self { up, placements })
+        let bridged = placed.iter().filter(|placement| placement.is_none()).count();
+        Ok(Self { up, placements, bridged })
+    }
+
+    /// Number of frames that show too little of the body to tell where it is, so that their
+    /// coordinates are a guess.
+    #[must_use]
+    pub fn bridged(&self) -> usize {
+        self.bridged
     }
 
     /// The transform from body-local to world coordinates of one frame.
@@ -254,30 +263,81 @@ impl Placement {
     }
 }
 
-/// Fills frames without a placement linearly, the heading along the shorter way round.
+/// Frames beside a gap whose mean move is the pace at which the body enters or leaves it.
+const PACE: usize = 2;
+
+impl Placement {
+    fn values(self) -> [f64; 3] {
+        [self.origin[0], self.origin[1], self.heading]
+    }
+}
+
+/// Fills frames without a placement by cubics that keep place, heading and pace at both ends, the
+/// heading along the shorter way round. Before the first and after the last placement the body stands.
+///
+/// Source: Hermite interpolation; a body that is lost for a moment keeps going as it went.
 fn interpolate(placed: &[Option<Placement>]) -> Option<Vec<Placement>> {
     let known: Vec<(usize, Placement)> =
         placed.iter().enumerate().filter_map(|(t, p)| p.map(|p| (t, p))).collect();
-    let (first, last) = (known.first()?, known.last()?);
+    let first = known.first()?.1;
     let between = |t: usize| {
         let after = known.partition_point(|(k, _)| *k <= t);
-        match (after.checked_sub(1).map(|i| known[i]), known.get(after)) {
-            (Some((_, p)), None) => p,
-            (None, _) => first.1,
-            (Some((s, p)), Some(&(e, q))) => {
-                let share = (t - s) as f64 / (e - s) as f64;
-                let turn = (q.heading - p.heading + std::f64::consts::PI)
-                    .rem_euclid(std::f64::consts::TAU)
-                    - std::f64::consts::PI;
-                Placement {
-                    origin: [0, 1].map(|a| p.origin[a] + share * (q.origin[a] - p.origin[a])),
-                    heading: p.heading + share * turn,
-                }
-            }
+        match (after.checked_sub(1), known.get(after)) {
+            (Some(before), None) => known[before].1,
+            (None, _) => first,
+            (Some(before), Some(_)) if known[before].0 == t => known[before].1,
+            (Some(before), Some(_)) => across(&known, before, t),
         }
     };
-    debug_assert!(first.0 <= last.0);
     Some((0..placed.len()).map(between).collect())
+}
+
+/// The placement of a frame between the known ones `before` and `before + 1`.
+fn across(known: &[(usize, Placement)], before: usize, t: usize) -> Placement {
+    let ((s, p), (e, q)) = (known[before], known[before + 1]);
+    let (length, share) = ((e - s) as f64, (t - s) as f64 / (e - s) as f64);
+    let from = p.values();
+    let to: [f64; 3] = std::array::from_fn(|a| from[a] + difference(p, q)[a]);
+    let entry = pace(known[..=before].iter().rev());
+    let exit = pace(known[before + 1..].iter());
+    // The entry pace is measured backwards in time.
+    let values: [f64; 3] = std::array::from_fn(|a| {
+        cubic([from[a], to[a]], [-entry[a] * length, exit[a] * length], share)
+    });
+    Placement { origin: [values[0], values[1]], heading: values[2] }
+}
+
+/// Mean move per frame from the first of consecutive known frames away over the next few; zero for
+/// a frame that stands alone.
+fn pace<'a>(mut known: impl Iterator<Item = &'a (usize, Placement)>) -> [f64; 3] {
+    let Some(&(border, start)) = known.next() else { return [0.0; 3] };
+    let mut sum = [0.0; 3];
+    let (mut frames, mut last) = (0, (border, start));
+    for &(t, placement) in known.take(PACE) {
+        if t.abs_diff(last.0) != 1 {
+            break;
+        }
+        let step = difference(last.1, placement);
+        (0..3).for_each(|a| sum[a] += step[a]);
+        (frames, last) = (frames + 1, (t, placement));
+    }
+    sum.map(|s| s / f64::from(frames.max(1)))
+}
+
+/// The move from one placement to another, the heading along the shorter way round.
+fn difference(p: Placement, q: Placement) -> [f64; 3] {
+    use std::f64::consts::{PI, TAU};
+    let turn = (q.heading - p.heading + PI).rem_euclid(TAU) - PI;
+    [q.origin[0] - p.origin[0], q.origin[1] - p.origin[1], turn]
+}
+
+/// The cubic with these values and slopes at 0 and 1.
+fn cubic([p, q]: [f64; 2], [u, v]: [f64; 2], x: f64) -> f64 {
+    let (x2, x3) = (x * x, x * x * x);
+    p * (2.0 * x3 - 3.0 * x2 + 1.0)
+        + u * (x3 - 2.0 * x2 + x)
+        + q * (3.0 * x2 - 2.0 * x3)
+        + v * (x3 - x2)
 }
 
 fn mean(take: &Take, t: usize, markers: &[usize]) -> Option<[f64; 3]> {
