@@ -9,8 +9,8 @@ use mocap_core::{
 use ndarray::{Array2, Array3};
 
 use crate::{
-    CovarianceStructure, EStep, EmParams, Fit, LdsError, MissingUpdate, NoiseStructure, Observations, Prediction, Start,
-    Termination, fit_em,
+    CovarianceStructure, EStep, EmParams, Fit, LdsError, MissingUpdate, NoiseStructure,
+    Observations, Prediction, Start, Termination, fit_em,
 };
 
 /// Hidden dimensions of the published methods, [Li10] §4.
@@ -20,7 +20,7 @@ const PUBLISHED_HIDDEN: usize = 16;
 const DEFAULT_HIDDEN: usize = 32;
 
 /// Frames for each hidden dimension beyond the published ones.
-const FRAMES_EACH: usize = 6;
+const FRAMES_EACH: usize = 9;
 
 /// The coordinates in which a model is learnt.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -73,7 +73,7 @@ pub enum Hidden {
     /// So many, from 1 to three per seen marker; a take with fewer coordinates is refused.
     Exactly(usize),
     /// So many or fewer, where the take has fewer coordinates or is so short that a large model would
-    /// learn its noise: at most one in six frames beyond the first 16, and one in two of those.
+    /// learn its noise: at most one in nine frames, but 16 from 32 frames on.
     AtMost(usize),
 }
 

@@ -188,10 +188,13 @@ proptest! {
 fn bad_parameters_and_bones_are_refused() {
     let error = BoleroHc::new(BoleroHcParams { first_iteration: 0, ..BoleroHcParams::default() });
     assert!(matches!(error, Err(FillError::Parameter { field: "first_iteration", .. })));
-    for iterations in [0, 1] {
-        let default = BoleroHcParams::default();
-        let model = LdsFillerParams { iterations, ..default.model };
-        let error = BoleroHc::new(BoleroHcParams { model, ..default });
+    for (iterations, params) in [
+        (0, BoleroHcParams::default()),
+        (0, BoleroHcParams::published()),
+        (1, BoleroHcParams::published()),
+    ] {
+        let model = LdsFillerParams { iterations, ..params.model };
+        let error = BoleroHc::new(BoleroHcParams { model, ..params });
         assert!(matches!(error, Err(FillError::Parameter { field: "iterations", .. })));
     }
     let take = with_gap(&articulated_take(50, 1), &[2], 10..20);

@@ -1,12 +1,13 @@
 //! Reconstruction of the paper's motions.
 
-use bolero_sc::{BoleroSc, BoleroScParams, Bones, Untied};
+use bolero_sc::{BoleroSc, BoleroScParams, Bones};
 use lds_kalman::{
     EStep,
     filler::{LdsFiller, LdsFillerParams},
 };
 use mocap_core::{GapFiller, Holdout};
-use mocap_testkit::{hide, motion, mse, oracle_bones};
+use mocap_testkit::{hide, motion, mse, ninety_trials, oracle_bones};
+use rayon::prelude::*;
 
 fn knee_and_shin() -> Option<Holdout> {
     Some(hide(motion("127_07")?, &["RKNE", "RSHN"], 25, 90))
@@ -32,8 +33,29 @@ fn error(filler: &dyn GapFiller, holdout: &Holdout) -> f64 {
 fn defaults_reconstruct_a_hidden_knee_from_what_is_visible() {
     let Some(holdout) = knee_and_shin() else { return };
     let mse = error(&BoleroSc::default(), &holdout);
-    // A straight line has 3.1e-2 m².
-    assert!(mse < 4e-4, "{mse:e} m²");
+    // A straight line has 3.1e-2 m². The defaults, chosen on other motions, have 4.1e-4 here, where the
+    // published steps are among their best with 2.7e-4.
+    assert!(mse < 6e-4, "{mse:e} m²");
+}
+
+#[test]
+fn exact_em_beats_the_published_steps_without_knowing_the_hidden_lengths() {
+    let Some(trials) = ninety_trials() else { return };
+    let published = BoleroSc::new(BoleroScParams::published()).unwrap();
+    let default = BoleroSc::default();
+    // Ten of all nine motions: long and short, with and without bones.
+    let (mut before, mut now): (Vec<f64>, Vec<f64>) = trials
+        .par_iter()
+        .step_by(9)
+        .map(|holdout| (error(&published, holdout), error(&default, holdout)))
+        .unzip();
+    let mean = |errors: &[f64]| errors.iter().sum::<f64>() / errors.len() as f64;
+    assert!(mean(&now) < 0.8 * mean(&before), "{:e} {:e}", mean(&now), mean(&before));
+    let median = |errors: &mut Vec<f64>| {
+        errors.sort_by(f64::total_cmp);
+        errors[errors.len() / 2]
+    };
+    assert!(median(&mut now) < 0.8 * median(&mut before));
 }
 
 #[test]
@@ -69,13 +91,11 @@ fn a_black_out_is_filled_as_well_as_by_the_plain_system() {
         let Some(holdout) = black_out(name, first, frames) else { return };
         let plain = error(&LdsFiller::new(LdsFillerParams::default()).unwrap(), &holdout);
         let soft = error(&BoleroSc::default(), &holdout);
-        // No bone has anything to hold on to, so both are exact EM from the subspace; the fill of
-        // the first iteration, interpolated here, is forgotten to a few per cent.
-        assert!(soft < 1.05 * plain, "{name}, {frames} frames: {soft:e} m², plain {plain:e} m²");
+        // No bone has anything to hold on to: both are the same system.
+        assert!(soft < 1.001 * plain, "{name}, {frames} frames: {soft:e} m², plain {plain:e} m²");
     }
     let Some(holdout) = black_out("132_43", 300, 25) else { return };
-    let params = BoleroScParams { untied: Untied::Observed, ..BoleroScParams::default() };
-    let held = error(&BoleroSc::new(params).unwrap(), &holdout);
+    let held = error(&BoleroSc::new(BoleroScParams::published()).unwrap(), &holdout);
     // The authors' code has 6.4e-3 m² there: fills that count hold on to what came first.
     assert!(held > 1e-3, "{held:e} m²");
 }

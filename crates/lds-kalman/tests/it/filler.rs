@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use lds_kalman::{
     EStep,
-    filler::{Coordinates, LdsFiller, LdsFillerParams},
+    filler::{Coordinates, Hidden, LdsFiller, LdsFillerParams},
 };
 use mocap_core::{
     CellState, CoreError, FillError, GapFiller, MarkerKnowledge, MarkerSet, Mask, Take,
@@ -50,7 +50,7 @@ fn short_takes_get_a_model_that_fits_them_and_greedy_users_an_error() {
     let take = hidden_in(&articulated_take(4, 1), 1..2, 0);
     let filled = lds(LdsFillerParams::default()).fill(&take).unwrap();
     assert_eq!(filled.state(1, 0), CellState::Filled);
-    let greedy = lds(LdsFillerParams { hidden: Some(25), ..LdsFillerParams::default() });
+    let greedy = lds(LdsFillerParams { hidden: Hidden::Exactly(25), ..LdsFillerParams::default() });
     let error = greedy.fill(&take).unwrap_err();
     let FillError::Method { method: "lds", source } = error else { panic!("{error}") };
     assert!(source.to_string().contains("at most 24"), "{source}");
@@ -63,7 +63,7 @@ fn parameters_are_checked_when_the_filler_is_made() {
         other => panic!("{other:?}"),
     };
     let defaults = LdsFillerParams::default;
-    assert_eq!(refused(LdsFillerParams { hidden: Some(0), ..defaults() }), "hidden");
+    assert_eq!(refused(LdsFillerParams { hidden: Hidden::Exactly(0), ..defaults() }), "hidden");
     assert_eq!(refused(LdsFillerParams { iterations: 0, ..defaults() }), "iterations");
     assert_eq!(refused(LdsFillerParams { tolerance: -1.0, ..defaults() }), "tolerance");
 }
@@ -92,7 +92,7 @@ fn body_coordinates_need_reference_markers_and_return_to_the_world() {
     let truth = walker(200);
     let take = hidden_in(&truth, 80..120, 9);
     let body = LdsFillerParams {
-        hidden: Some(6),
+        hidden: Hidden::Exactly(6),
         coordinates: Coordinates::Body(Arc::new(MarkerKnowledge::cmu_41())),
         ..LdsFillerParams::default()
     };
