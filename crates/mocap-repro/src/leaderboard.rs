@@ -172,7 +172,17 @@ fn ranking(rows: &[Row]) -> Section {
         "The best by protocol and gap",
         "Mean over trials of a trial's mean error in mm, of the methods that filled every sample. The \
          last column is `auto` by the best: 1 where it is the best itself.",
-        &["protocol", "gap", "best", "mm", "second", "mm", "third", "mm", "auto by best"],
+        &[
+            "protocol",
+            "gap",
+            "best",
+            "best mm",
+            "second",
+            "second mm",
+            "third",
+            "third mm",
+            "auto by best",
+        ],
         places(rows).into_iter().map(row),
     )
 }
