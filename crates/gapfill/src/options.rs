@@ -17,6 +17,10 @@ pub struct Options {
     pub lambda: Option<f64>,
     /// Iterations at most, at least 1; `None`: the method's own number.
     pub iterations: Option<usize>,
+    /// Whether `dynammo`, `bolero-sc` and `bolero-hc` have every setting of [Li10] §4, to compare with
+    /// published figures: a random start, 16 hidden dimensions, 100 iterations, isotropic
+    /// covariances, fills that count as observed, and no joining at the borders.
+    pub published: bool,
     /// Where a dynamical system starts to learn; `None`: the method's own choice.
     pub start: Option<Start>,
     /// Seed of a random start.
@@ -42,6 +46,7 @@ impl Default for Options {
             hidden: None,
             lambda: None,
             iterations: None,
+            published: false,
             start: None,
             seed: 0,
             edges: Edges::default(),

@@ -100,8 +100,12 @@ pub const METHODS: &[Method] = &[
     Method {
         id: "dynammo",
         summary: "a linear dynamical system as Li et al. published it in 2009; for comparison",
-        options: &["frame", "hidden", "iterations", "start", "seed", "borders"],
-        build: |options| dynamical_system(LdsFillerParams::dynammo(), Borders::Keep, options),
+        options: &["frame", "hidden", "iterations", "published", "start", "seed", "borders"],
+        build: |options| {
+            let own = LdsFillerParams::dynammo();
+            let params = if options.published { LdsFillerParams::published() } else { own };
+            dynamical_system(params, Borders::Keep, options)
+        },
     },
     Method {
         id: "lds",
@@ -112,13 +116,32 @@ pub const METHODS: &[Method] = &[
     Method {
         id: "bolero-sc",
         summary: "a linear dynamical system that keeps bone lengths; for long gaps of several markers",
-        options: &["bones", "lambda", "frame", "hidden", "iterations", "start", "seed", "borders"],
+        options: &[
+            "bones",
+            "lambda",
+            "frame",
+            "hidden",
+            "iterations",
+            "published",
+            "start",
+            "seed",
+            "borders",
+        ],
         build: soft_bones,
     },
     Method {
         id: "bolero-hc",
         summary: "the same with exact bone lengths; lists the frames in which they cannot be kept",
-        options: &["bones", "frame", "hidden", "iterations", "start", "seed", "borders"],
+        options: &[
+            "bones",
+            "frame",
+            "hidden",
+            "iterations",
+            "published",
+            "start",
+            "seed",
+            "borders",
+        ],
         build: hard_bones,
     },
 ];
@@ -192,7 +215,11 @@ fn bordered(filler: impl GapFiller + 'static, borders: Borders) -> Box<dyn GapFi
 }
 
 fn soft_bones(options: &Options) -> Result<Box<dyn GapFiller>, FillError> {
-    let defaults = BoleroScParams::default();
+    let (defaults, borders) = if options.published {
+        (BoleroScParams::published(), Borders::Keep)
+    } else {
+        (BoleroScParams::default(), Borders::Join)
+    };
     let bones = match &options.bones {
         Bones::Auto(known) => bolero_sc::Bones::Estimated(BoneRule::Known(known.clone())),
         Bones::None => bolero_sc::Bones::Given(BoneSet::default()),
@@ -204,11 +231,12 @@ fn soft_bones(options: &Options) -> Result<Box<dyn GapFiller>, FillError> {
         bones,
         ..defaults
     })?;
-    Ok(bordered(filler, options.borders.unwrap_or(Borders::Join)))
+    Ok(bordered(filler, options.borders.unwrap_or(borders)))
 }
 
 fn hard_bones(options: &Options) -> Result<Box<dyn GapFiller>, FillError> {
-    let defaults = BoleroHcParams::default();
+    let own = BoleroHcParams::default();
+    let defaults = if options.published { BoleroHcParams::published() } else { own };
     let bones = match &options.bones {
         Bones::Auto(known) => bolero_hc::Bones::Estimated(BoneRule::Known(known.clone())),
         Bones::None => bolero_hc::Bones::Given(BoneSet::default()),

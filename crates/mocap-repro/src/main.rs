@@ -80,7 +80,7 @@ struct Common {
     /// Methods, with commas between [default: all]; `bolero-sc+lambda=100` sets an option
     #[arg(long, value_delimiter = ',', value_name = "A,B,…")]
     methods: Vec<String>,
-    /// Iterations at most [default: 100, or 20 with --quick]
+    /// Iterations at most [default: each method's own number, or 20 with --quick]
     #[arg(long, value_name = "N")]
     iterations: Option<std::num::NonZeroUsize>,
     /// Print the figures as JSON rather than as tables
@@ -109,15 +109,24 @@ fn main() -> ExitCode {
     }
 }
 
-/// The soft bone lengths without bones: what of a result is due to the bones.
-const ABLATION: &str = "bolero-sc+lambda=0";
+/// Beside the methods as they come: those of the paper with all its settings, and the soft bone lengths without
+/// bones, which show what of a result is due to the bones.
+const ALSO: [&str; 5] = [
+    "dynammo+published",
+    "bolero-sc+published+lambda=0",
+    "bolero-sc+published",
+    "bolero-hc+published",
+    "bolero-sc+lambda=0",
+];
 
 impl Bolero {
     fn run(&self) -> Result<()> {
         let common = &self.common;
         let mut variants = Variant::parse_list(&common.methods)?;
         if common.methods.is_empty() {
-            variants.push(Variant::parse(ABLATION)?);
+            for text in ALSO {
+                variants.push(Variant::parse(text)?);
+            }
         }
         let evaluation = if common.quick {
             Evaluation::of_fixtures(&fixtures())?
@@ -151,7 +160,7 @@ impl Leaderboard {
             variants: variants.clone(),
             coordinates: vec![Coordinates::Own],
             knowledge: vec![Knowledge::Visible],
-            iterations: Some(common.iterations()),
+            iterations: common.iterations(),
         };
         let cut = |protocol: &Protocol| {
             if common.quick {
@@ -199,8 +208,9 @@ impl Common {
         )
     }
 
-    fn iterations(&self) -> usize {
-        self.iterations.map_or(if self.quick { 20 } else { 100 }, std::num::NonZero::get)
+    /// Iterations at most; `None`: each method's own number.
+    fn iterations(&self) -> Option<usize> {
+        self.iterations.map(std::num::NonZero::get).or(self.quick.then_some(20))
     }
 
     fn execute(

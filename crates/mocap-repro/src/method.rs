@@ -19,9 +19,10 @@ pub(crate) struct Settings {
     hidden: Option<usize>,
     keep_borders: Option<bool>,
     random_start: Option<bool>,
+    published: bool,
 }
 
-const KEYS: [&str; 4] = ["lambda", "hidden", "borders", "start"];
+const KEYS: [&str; 5] = ["lambda", "hidden", "borders", "start", "published"];
 
 impl Variant {
     /// Every method of the registry, as it comes.
@@ -37,7 +38,8 @@ impl Variant {
     }
 
     /// Reads `METHOD` or `METHOD+option=value+…`; the options are `lambda` (from 0), `hidden` (from 1),
-    /// `borders` (`join` or `keep`) and `start` (`random` or `subspace`), where the method reads them.
+    /// `borders` (`join` or `keep`), `start` (`random` or `subspace`), and `published` without a value (all
+    /// settings of the paper), where the method reads them.
     ///
     /// # Errors
     /// [`ReproError::Method`] for a method that is not in the registry and for values out of range,
@@ -73,7 +75,7 @@ impl Variant {
     }
 
     fn set(&mut self, part: &str) -> Option<()> {
-        let (key, value) = part.split_once('=')?;
+        let (key, value) = part.split_once('=').unwrap_or((part, ""));
         if !(self.reads.contains(&key) && KEYS.contains(&key)) {
             return None;
         }
@@ -81,6 +83,8 @@ impl Variant {
         match key {
             "lambda" => settings.lambda = Some(value.parse().ok()?),
             "hidden" => settings.hidden = Some(value.parse().ok()?),
+            "published" if value.is_empty() => settings.published = true,
+            "published" => return None,
             "borders" => settings.keep_borders = Some(borders(value)? == Borders::Keep),
             _ => settings.random_start = Some(start(value)? == Start::Random),
         }
@@ -109,10 +113,11 @@ impl Variant {
     /// Options for the method. Gaps at the ends of a take are held, as the published code did, so
     /// that every hidden sample is scored.
     pub(crate) fn options(&self) -> Options {
-        let Settings { lambda, hidden, keep_borders, random_start } = self.settings;
+        let Settings { lambda, hidden, keep_borders, random_start, published } = self.settings;
         let borders = keep_borders.map(|keep| if keep { Borders::Keep } else { Borders::Join });
         let start = random_start.map(|random| if random { Start::Random } else { Start::Subspace });
-        Options { lambda, hidden, borders, start, edges: Edges::Hold, ..Options::default() }
+        let edges = Edges::Hold;
+        Options { lambda, hidden, borders, start, published, edges, ..Options::default() }
     }
 }
 

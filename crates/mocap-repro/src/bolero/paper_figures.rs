@@ -19,9 +19,9 @@ use crate::{
 const NAMES: [(&str, &str); 6] = [
     ("spline", "spline"),
     ("msvd", "MSVD"),
-    ("dynammo", "LDS/DynaMMo"),
-    ("bolero-hc", "BoLeRO-HC"),
-    ("bolero-sc", "BoLeRO-SC"),
+    ("dynammo+published", "LDS/DynaMMo"),
+    ("bolero-hc+published", "BoLeRO-HC"),
+    ("bolero-sc+published", "BoLeRO-SC"),
     ("auto", "auto (not in the paper)"),
 ];
 const CM_PER_M: f64 = 100.0;
@@ -51,9 +51,9 @@ struct Case<'a> {
 pub(super) fn figures(
     evaluation: &Evaluation,
     variants: &[Variant],
-    iterations: usize,
+    iterations: Option<usize>,
 ) -> Result<Vec<Figure>, ReproError> {
-    let with_bones = ["dynammo", "bolero-hc", "bolero-sc", "auto"];
+    let with_bones = ["dynammo+published", "bolero-hc+published", "bolero-sc+published", "auto"];
     let mut figures = Vec::new();
     let case = |name: &str, methods: &[&str]| {
         let trial = evaluation.case(name);
@@ -66,7 +66,7 @@ pub(super) fn figures(
         let title = format!("Fig. 1: bone lengths and stills, {}", walking.trial.name);
         figures.push(walking.bodies("fig-1", title, evaluation.stills[0]));
     }
-    let coordinates = ["spline", "msvd", "dynammo", "bolero-sc", "auto"];
+    let coordinates = ["spline", "msvd", "dynammo+published", "bolero-sc+published", "auto"];
     if let Some(running) = case(&evaluation.running, &coordinates)? {
         figures.push(running.coordinates());
     }
@@ -83,7 +83,7 @@ impl<'a> Case<'a> {
         motion: &Arc<Motion>,
         variants: &[Variant],
         methods: &[&str],
-        iterations: usize,
+        iterations: Option<usize>,
     ) -> Result<Self, ReproError> {
         let (mut versions, mut truth) = (Vec::new(), None);
         for method in methods {
@@ -94,7 +94,7 @@ impl<'a> Case<'a> {
                 variant,
                 coordinates: Coordinates::Body,
                 knowledge: Knowledge::Oracle,
-                iterations: Some(iterations),
+                iterations,
             };
             let (holdout, filled) = job.fill()?;
             truth.get_or_insert_with(|| holdout.truth().clone());

@@ -63,7 +63,7 @@ fn lambda(cells: &[Finished<'_>], references: &[Reference]) -> Option<Figure> {
             Points { at: ours, style: OURS, radius: 5.0 },
         ],
     };
-    let mut keys = vec![key("bolero-sc", OURS)];
+    let mut keys = vec![key("bolero-sc+published", OURS)];
     if !theirs.is_empty() {
         keys.push(key("published code", THEIRS));
     }

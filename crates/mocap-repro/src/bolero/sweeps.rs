@@ -16,9 +16,21 @@ pub(super) struct Sweeps {
 }
 
 /// The methods whose start is drawn, and what they are called then.
-const SEEDED: [&str; 6] =
-    ["dynammo", "lds", "bolero-sc+lambda=0", "bolero-sc", "bolero-sc+lambda=100", "bolero-hc"];
-const CAPPED: [&str; 5] = ["dynammo", "lds", "bolero-sc+lambda=0", "bolero-sc", "bolero-hc"];
+const SEEDED: [&str; 5] = [
+    "dynammo+published",
+    "bolero-sc+published+lambda=0",
+    "bolero-sc+published",
+    "bolero-sc+published+lambda=100",
+    "bolero-hc+published",
+];
+const CAPPED: [&str; 6] = [
+    "dynammo+published",
+    "bolero-sc+published",
+    "bolero-hc+published",
+    "lds",
+    "bolero-sc",
+    "bolero-hc",
+];
 
 impl Sweeps {
     pub(super) fn full() -> Self {
@@ -55,8 +67,9 @@ impl Sweeps {
             (!variants.is_empty() && !trials.is_empty())
                 .then(|| Matrix { variants, ..as_paper(&trials) })
         };
-        let lambdas = self.lambdas.iter().map(|power| format!("bolero-sc+lambda=1e{power}"));
-        let seeded = SEEDED.map(|label| format!("{label}+start=random"));
+        let lambdas =
+            self.lambdas.iter().map(|power| format!("bolero-sc+published+lambda=1e{power}"));
+        let seeded = SEEDED.map(str::to_owned);
         let of_seed = |case: &Trial, seed: u64| Trial {
             set: set::SEEDS.to_owned(),
             name: format!("{}, seed {seed}", case.name),

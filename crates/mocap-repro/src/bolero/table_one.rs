@@ -9,9 +9,9 @@ use crate::{Coordinates, Finished, Knowledge, Section, Stats, summary::group};
 const PAPER: [(&str, bool, bool); 5] = [
     ("spline", false, true),
     ("msvd", false, false),
-    ("dynammo", false, true),
-    ("bolero-sc", true, true),
-    ("bolero-hc", true, true),
+    ("dynammo+published", false, true),
+    ("bolero-sc+published", true, true),
+    ("bolero-hc+published", true, true),
 ];
 /// Deviation up to which bone lengths count as kept: that of the complete motions is of this size.
 const KEPT_MM: f64 = 5.0;

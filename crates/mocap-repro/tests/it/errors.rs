@@ -18,10 +18,11 @@ fn unknown_methods_and_options_are_refused_with_what_there_is() {
     let refused = |text: &str| message(&Variant::parse(text).unwrap_err());
     assert!(refused("bolero").contains("bolero-sc"), "names the methods that there are");
     assert!(refused("linear+lambda=3").contains("`lambda=3`"));
-    assert!(refused("bolero-sc+beauty=1").contains("lambda, hidden, borders, start"));
+    assert!(refused("bolero-sc+beauty=1").contains("lambda, hidden, borders, start, published"));
     assert!(refused("bolero-sc+lambda=much").contains("lambda"));
     assert!(refused("bolero-sc+lambda=-1").contains("lambda"));
     assert!(refused("dynammo+hidden=0").contains("hidden"));
+    assert!(refused("dynammo+published=1").contains("`published=1`"));
     assert!(refused("dynammo+start=zero").contains("`start=zero`"));
     assert!(matches!("all".parse::<Protocol>(), Err(ReproError::Protocol { .. })));
     assert_eq!(Variant::parse("bolero-sc+lambda=100").unwrap().label(), "bolero-sc+lambda=100");
@@ -96,7 +97,7 @@ fn a_trial_that_does_not_fit_stops_the_run_before_it_starts() {
     assert!(with(&|trial| trial.motion = "swim".to_owned()).contains("swim"));
     assert!(with(&|trial| trial.hidden.clear()).contains("hides nothing"));
     // The hard bones' first iterations are those of the plain system.
-    let hard = vec![Variant::parse("bolero-hc").unwrap()];
+    let hard = vec![Variant::parse("bolero-hc+published").unwrap()];
     let one = Matrix { variants: hard, iterations: Some(1), ..matrix.clone() };
     assert!(refused_before_work(&one).contains("iterations"));
     let empty = Matrix { variants: Vec::new(), ..matrix.clone() };

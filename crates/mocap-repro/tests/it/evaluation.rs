@@ -11,7 +11,7 @@ const ITERATIONS: usize = 2;
 fn matrices(evaluation: &Evaluation, methods: &[&str]) -> Vec<Matrix> {
     let variants: Vec<Variant> = methods.iter().map(|m| Variant::parse(m).unwrap()).collect();
     // Two iterations for the sweeps too, which have numbers of their own.
-    let mut matrices = evaluation.matrices(&variants, &[Coordinates::Body], ITERATIONS);
+    let mut matrices = evaluation.matrices(&variants, &[Coordinates::Body], Some(ITERATIONS));
     for trial in matrices.iter_mut().flat_map(|matrix| &mut matrix.trials) {
         trial.iterations = trial.iterations.map(|number| number.min(ITERATIONS));
     }
@@ -20,14 +20,22 @@ fn matrices(evaluation: &Evaluation, methods: &[&str]) -> Vec<Matrix> {
 
 #[test]
 fn a_report_holds_every_figure_and_table_of_the_paper() {
-    let methods = ["linear", "spline", "ridge", "dynammo", "bolero-sc+lambda=0", "bolero-sc"];
+    let methods = [
+        "linear",
+        "spline",
+        "ridge",
+        "dynammo+published",
+        "bolero-sc+published+lambda=0",
+        "bolero-sc+published",
+        "bolero-sc",
+    ];
     let evaluation = Evaluation::of_fixtures(&fixtures()).unwrap();
     let matrices = matrices(&evaluation, &methods);
     let folder = tempfile::tempdir().unwrap();
     let mut store = Store::open(&folder.path().join("cells.jsonl")).unwrap();
     let cells = run(&matrices, &mut store, 2, &|_| ()).unwrap();
     let variants = &matrices[0].variants;
-    let report = bolero_report(&evaluation, variants, ITERATIONS, &cells).unwrap();
+    let report = bolero_report(&evaluation, variants, Some(ITERATIONS), &cells).unwrap();
     let [markdown, page] = report.write(folder.path(), "bolero").unwrap();
 
     let markdown = fs::read_to_string(markdown).unwrap();
@@ -96,7 +104,8 @@ fn methods_that_are_not_run_leave_their_figures_out() {
     let mut store = Store::open(&folder.path().join("cells.jsonl")).unwrap();
     let cells = run(&matrices, &mut store, 1, &|_| ()).unwrap();
     assert!(cells.iter().all(|cell| cell.variant.label() == "linear"));
-    let report = bolero_report(&evaluation, &matrices[0].variants, ITERATIONS, &cells).unwrap();
+    let report =
+        bolero_report(&evaluation, &matrices[0].variants, Some(ITERATIONS), &cells).unwrap();
     report.write(folder.path(), "bolero").unwrap();
     assert!(!folder.path().join("lambda.png").exists());
 }
@@ -110,7 +119,7 @@ fn the_papers_trials_are_the_cases_the_list_and_the_random_rule() {
     };
     let evaluation = Evaluation::of_paper(&data).unwrap();
     let variants = [Variant::parse("linear").unwrap()];
-    let matrices = evaluation.matrices(&variants, &[Coordinates::Body], 100);
+    let matrices = evaluation.matrices(&variants, &[Coordinates::Body], Some(100));
     matrices.iter().try_for_each(Matrix::check).unwrap();
     let of = |set: &str| {
         let all = matrices.iter().flat_map(|matrix| &matrix.trials);
