@@ -34,11 +34,11 @@ fn filler(bones: &BoneSet, lambda: f64, iterations: usize) -> BoleroSc {
             iterations,
             tolerance: 0.0,
             coordinates: Coordinates::World,
-            ..LdsFillerParams::published()
+            ..LdsFillerParams::default()
         },
         lambda,
         bones: Bones::Given(bones.clone()),
-        ..BoleroScParams::published()
+        ..BoleroScParams::default()
     })
     .unwrap()
 }

@@ -86,7 +86,7 @@ pub(crate) fn table(compared: &[Compared]) -> Section {
             Entry::text(theirs.figure.replace('_', " ")),
             value(theirs.value),
             value(both.ours),
-            Entry::number(Some(both.ratio()), 2),
+            ratio(both.ratio()),
             Entry::text(&theirs.source),
         ]
     };
@@ -107,4 +107,9 @@ pub(crate) fn table(compared: &[Compared]) -> Section {
         ],
         compared.iter().map(row),
     )
+}
+
+/// A ratio beyond all sense is one of a fill that ran away.
+fn ratio(value: f64) -> Entry {
+    if value < 1e4 { Entry::number(Some(value), 2) } else { Entry::scientific(Some(value)) }
 }
