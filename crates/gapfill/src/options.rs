@@ -11,7 +11,7 @@ pub struct Options {
     pub known: Vec<MarkerKnowledge>,
     /// Coordinates to learn in; `None`: the method's own choice.
     pub coordinates: Option<Coordinates>,
-    /// Hidden dimensions of a dynamical system, at least 1; `None`: 16, or fewer for few markers.
+    /// Hidden dimensions of a dynamical system, at least 1; `None`: 32, or fewer for short takes.
     pub hidden: Option<usize>,
     /// Weight of the bone lengths, from 0; `None`: 1e6. Its unit is that of [`bolero_sc`]'s `lambda`.
     pub lambda: Option<f64>,

@@ -78,7 +78,7 @@ struct MethodArgs {
     /// Coordinates in which the motion is learnt [default: the method's own choice]
     #[arg(long, value_enum, value_name = "FRAME")]
     frame: Option<FrameArg>,
-    /// Hidden dimensions of a dynamical system [default: 16, or fewer for few markers]
+    /// Hidden dimensions of a dynamical system [default: 32, or fewer for short takes]
     #[arg(long, value_name = "N")]
     hidden: Option<usize>,
     /// Weight of the bone lengths [default: 1e6]
@@ -87,6 +87,9 @@ struct MethodArgs {
     /// Iterations at most
     #[arg(long, value_name = "N")]
     iterations: Option<usize>,
+    /// Every setting of the paper, for `dynammo`, `bolero-sc` and `bolero-hc`, to compare with it
+    #[arg(long)]
+    published: bool,
     /// Seed of a random start: the same seed gives the same bits
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
@@ -242,7 +245,7 @@ impl Fill {
         object["options"] = json!({
             "method": self.method.method, "bones": self.method.bones,
             "frame": self.method.frame.map(|f| format!("{f:?}").to_lowercase()),
-            "hidden": self.method.hidden, "lambda": self.method.lambda,
+            "hidden": self.method.hidden, "lambda": self.method.lambda, "published": self.method.published,
             "iterations": self.method.iterations, "seed": self.method.seed,
             "edges": format!("{:?}", self.method.edges).to_lowercase(),
             "borders": self.method.borders.map(|b| format!("{b:?}").to_lowercase()), "max_gap_s": self.max_gap,
@@ -290,6 +293,7 @@ impl MethodArgs {
             hidden: self.hidden,
             lambda: self.lambda,
             iterations: self.iterations,
+            published: self.published,
             start: None,
             seed: self.seed,
             edges: match self.edges {
