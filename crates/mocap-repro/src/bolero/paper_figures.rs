@@ -22,7 +22,7 @@ const NAMES: [(&str, &str); 6] = [
     ("dynammo+published", "LDS/DynaMMo"),
     ("bolero-hc+published", "BoLeRO-HC"),
     ("bolero-sc+published", "BoLeRO-SC"),
-    ("auto", "auto (not in the paper)"),
+    ("auto", "auto (ours)"),
 ];
 const CM_PER_M: f64 = 100.0;
 

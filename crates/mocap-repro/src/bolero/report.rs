@@ -54,7 +54,7 @@ pub fn bolero_report(
     sections.retain(|section| !section.table.is_empty());
     sections.push(failure_table(cells));
     let mut figures = paper_figures::figures(evaluation, variants, iterations)?;
-    figures.extend(trial_figures::figures(cells, &legend));
+    figures.extend(trial_figures::figures(cells));
     figures.extend(sweep_figures::figures(cells, &legend));
     Ok(Report {
         title: "Bone-length constrained gap filling: the paper's evaluation, ours beside theirs"

@@ -46,7 +46,7 @@ pub(super) fn motion_means<'a>(cells: &'a [Finished<'_>]) -> (Vec<&'a str>, Mean
 }
 
 /// Bars and scatter plots for each condition of a set of trials.
-pub(super) fn figures(cells: &[Finished<'_>], legend: &Legend<'_>) -> Vec<Figure> {
+pub(super) fn figures(cells: &[Finished<'_>]) -> Vec<Figure> {
     let aside = [set::CASES, set::PART, set::MASKS, set::LAMBDA, set::SEEDS, set::CAPS];
     let own: Vec<Finished<'_>> =
         cells.iter().filter(|cell| !aside.contains(&cell.trial.set.as_str())).cloned().collect();
@@ -58,18 +58,20 @@ pub(super) fn figures(cells: &[Finished<'_>], legend: &Legend<'_>) -> Vec<Figure
         let class = &members[0].trial.class;
         let what = format!("{class}; {coordinates} coordinates, told {knowledge}");
         let id = format!("{set}-{coordinates}-{knowledge}");
-        figures.push(bars(&members, &id, &what, legend));
+        figures.push(bars(&members, &id, &what));
         figures.extend(scatter(&members, &id, &what));
     }
     figures
 }
 
-fn bars(cells: &[Finished<'_>], id: &str, what: &str, legend: &Legend<'_>) -> Figure {
+fn bars(cells: &[Finished<'_>], id: &str, what: &str) -> Figure {
     let (motions, mut means) = motion_means(cells);
     if means.iter().any(|(key, _)| IN_BARS.contains(&key.2)) {
         means.retain(|(key, _)| IN_BARS.contains(&key.2));
         means.sort_by_key(|(key, _)| IN_BARS.iter().position(|method| *method == key.2));
     }
+    // A report has more methods than there are colours; these few get one each.
+    let legend = Legend::of(means.iter().map(|(key, _)| key.2));
     Figure {
         id: format!("fig-4a-{id}"),
         title: format!("Fig. 4(a): mean mse by motion ({what})"),
@@ -80,8 +82,8 @@ fn bars(cells: &[Finished<'_>], id: &str, what: &str, legend: &Legend<'_>) -> Fi
             y_label: "mean mse [m²]".to_owned(),
             groups: motions.into_iter().map(str::to_owned).collect(),
             series: means
-                .into_iter()
-                .map(|(key, means)| (key.2.to_owned(), legend.style(key.2), means))
+                .iter()
+                .map(|(key, means)| (key.2.to_owned(), legend.style(key.2), means.clone()))
                 .collect(),
         }),
     }
