@@ -33,6 +33,12 @@ impl Progress {
         ControlFlow::Continue(())
     }
 
+    /// Shows that so many of so many are done.
+    pub(crate) fn count(&self, done: usize, of: usize) {
+        self.bar.set_length(of as u64);
+        self.bar.set_position(done as u64);
+    }
+
     /// Takes the bar away.
     pub(crate) fn finish(self) {
         self.bar.finish_and_clear();

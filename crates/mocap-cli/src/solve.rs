@@ -255,7 +255,7 @@ impl Solve {
     }
 }
 
-fn is_json(path: &Path) -> bool {
+pub(crate) fn is_json(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"))
 }
 
@@ -283,14 +283,14 @@ fn body(name: &str, read: &ReadArgs) -> Result<Body> {
 }
 
 /// The motion with z up turned to y up: x becomes z, y becomes x, z becomes y.
-fn lie_down(motion: &Motion) -> Result<Motion> {
+pub(crate) fn lie_down(motion: &Motion) -> Result<Motion> {
     let turn = Rotation::from_matrix(&[[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]);
     let rotation = turn.context("a permutation of the axes is a rotation")?;
     Ok(motion.transformed(&RigidTransform { rotation, translation: [0.0; 3] })?)
 }
 
 /// Joints, and for each frame their places in metres and rotations relative to the parent as w, x, y, z.
-fn motion_json(motion: &Motion) -> Result<Value> {
+pub(crate) fn motion_json(motion: &Motion) -> Result<Value> {
     let skeleton = motion.skeleton();
     let joints: Vec<Value> = skeleton
         .joints()

@@ -12,6 +12,8 @@ pub(crate) enum Stream {
     Markers,
     Motion,
     Noise,
+    Person,
+    Hands,
 }
 
 /// Random numbers with the same bits on every platform.

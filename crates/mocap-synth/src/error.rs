@@ -32,10 +32,50 @@ pub enum SynthError {
         unit: &'static str,
     },
     /// A word that names no activity.
-    #[error("`{word}` is no activity; choose one of walk, run, jump, throw")]
+    #[error("`{word}` is no activity; choose one of walk, run, jump, throw, turn, reach, kick")]
     UnknownActivity {
         /// The word as given.
         word: String,
+    },
+    /// A word that names no layout.
+    #[error("`{word}` is no marker layout; choose one of cmu-41, front_waist-53, production-57")]
+    UnknownLayout {
+        /// The word as given.
+        word: String,
+    },
+    /// A word that is no number of finger markers.
+    #[error("`{word}` is no number of finger markers a hand; choose 0, 5 or 10")]
+    UnknownHands {
+        /// The word as given.
+        word: String,
+    },
+    /// A motion whose joints do not say where a part of the body is.
+    #[error(
+        "the motion to retarget has no joint for the {part}: it needs one of {names}; rename the joint in the \
+         skeleton file, or take a skeleton of the CMU database's kind"
+    )]
+    NoSuchPart {
+        /// The part of the body.
+        part: &'static str,
+        /// Names it may have, with commas between.
+        names: String,
+    },
+    /// A motion whose skeleton cannot be stood beside the body.
+    #[error(
+        "the {part} of the motion to retarget has no length in the rest pose; give its bones their offsets"
+    )]
+    NoLength {
+        /// The part of the body.
+        part: &'static str,
+    },
+    /// A motion without frames.
+    #[error("the motion to retarget has no frame")]
+    NoFrames,
+    /// A motion with NaN or infinity in it.
+    #[error("frame {frame} of the motion to retarget holds a number that is not finite")]
+    NotFinite {
+        /// Zero-based frame.
+        frame: usize,
     },
     /// A value that the core types refuse.
     #[error(transparent)]

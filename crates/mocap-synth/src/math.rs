@@ -61,3 +61,42 @@ pub(crate) fn about_z(radians: f64) -> Rotation {
 fn unit(w: f64, v: [f64; 3]) -> Rotation {
     Rotation::from_quaternion(w, v).unwrap_or(Rotation::IDENTITY)
 }
+
+/// The step of N unknowns that takes most of a residual away, given how it changes with each of them:
+/// `−Jᵀ (J Jᵀ + λ I)⁻¹ r`, three equations whatever the number of unknowns.
+pub(crate) fn damped<const N: usize>(
+    columns: &[[f64; 3]; N],
+    residual: [f64; 3],
+    damping: f64,
+) -> [f64; N] {
+    let mut normal = [[0.0; 3]; 3];
+    for column in columns {
+        for (a, row) in normal.iter_mut().enumerate() {
+            for (b, entry) in row.iter_mut().enumerate() {
+                *entry += column[a] * column[b];
+            }
+        }
+    }
+    for (a, row) in normal.iter_mut().enumerate() {
+        row[a] += damping;
+    }
+    let weights = solve(normal, residual);
+    columns.map(|column| -(0..3).map(|a| column[a] * weights[a]).sum::<f64>())
+}
+
+/// Cramer's rule for a symmetric positive definite system.
+pub(crate) fn solve(m: [[f64; 3]; 3], r: [f64; 3]) -> [f64; 3] {
+    let det = |c: [[f64; 3]; 3]| {
+        c[0][0] * (c[1][1] * c[2][2] - c[1][2] * c[2][1])
+            - c[0][1] * (c[1][0] * c[2][2] - c[1][2] * c[2][0])
+            + c[0][2] * (c[1][0] * c[2][1] - c[1][1] * c[2][0])
+    };
+    let whole = det(m);
+    std::array::from_fn(|k| {
+        let mut replaced = m;
+        for (row, value) in replaced.iter_mut().zip(r) {
+            row[k] = value;
+        }
+        det(replaced) / whole
+    })
+}

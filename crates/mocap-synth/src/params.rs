@@ -1,6 +1,6 @@
 use std::{fmt, str::FromStr};
 
-use crate::SynthError;
+use crate::{Hands, Layout, Person, SynthError};
 
 /// What the body does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -14,11 +14,18 @@ pub enum Activity {
     Jump,
     /// Throws overarm with the right hand again and again: wind-up, step, throw, follow-through.
     Throw,
+    /// Turns on the spot with small steps, the head ahead of the body.
+    Turn,
+    /// Reaches for things near and far, high and low, with either hand.
+    Reach,
+    /// Kicks with the right foot again and again: run-up step, swing, follow-through.
+    Kick,
 }
 
 impl Activity {
     /// Every activity.
-    pub const ALL: [Self; 4] = [Self::Walk, Self::Run, Self::Jump, Self::Throw];
+    pub const ALL: [Self; 7] =
+        [Self::Walk, Self::Run, Self::Jump, Self::Throw, Self::Turn, Self::Reach, Self::Kick];
 
     /// Name as users type it.
     #[must_use]
@@ -28,6 +35,9 @@ impl Activity {
             Self::Run => "run",
             Self::Jump => "jump",
             Self::Throw => "throw",
+            Self::Turn => "turn",
+            Self::Reach => "reach",
+            Self::Kick => "kick",
         }
     }
 }
@@ -68,8 +78,19 @@ pub struct SynthParams {
     pub rate_hz: f64,
     /// Seed of the body, its markers, its motion and the noise. Default: 0.
     pub seed: u64,
-    /// Height of the body in metres, from 1.2 to 2.2. Default: 1.75.
+    /// Height of the template body in metres, from 1.2 to 2.2; a person has their own. Default: 1.75.
     pub stature_m: f64,
+    /// Whose body it is. Default: nobody's, the template at `stature_m` with every length a few percent off by
+    /// `seed`, and markers where the layout says. A person has measures that go together, and a skin that
+    /// markers sit on.
+    pub person: Option<Person>,
+    /// Which markers the body wears. Default: those of the CMU database.
+    pub layout: Layout,
+    /// Markers on the fingers, and fingers that move. Default: none.
+    pub hands: Hands,
+    /// Radius of the markers in metres, from 0 to 0.03: their centres are so far above the skin of a person.
+    /// Finger markers have 0.4 of it. Default: 0.007.
+    pub marker_radius_m: f64,
     /// Standard deviation of the white measurement noise per coordinate in metres, from 0 to 0.01.
     /// Default: 0.00025, what a calibrated optical system shows on a marker at rest.
     pub noise_m: f64,
@@ -86,6 +107,10 @@ impl Default for SynthParams {
             rate_hz: 120.0,
             seed: 0,
             stature_m: 1.75,
+            person: None,
+            layout: Layout::Cmu41,
+            hands: Hands::None,
+            marker_radius_m: 0.007,
             noise_m: 0.000_25,
             soft_tissue: 1.0,
         }
@@ -101,12 +126,13 @@ impl SynthParams {
         }
         check("rate_hz", self.rate_hz, 10.0, 2000.0, "Hz")?;
         check("stature_m", self.stature_m, 1.2, 2.2, "m")?;
+        check("marker_radius_m", self.marker_radius_m, 0.0, 0.03, "m")?;
         check("noise_m", self.noise_m, 0.0, 0.01, "m")?;
         check("soft_tissue", self.soft_tissue, 0.0, 3.0, "times the default")
     }
 }
 
-fn check(
+pub(crate) fn check(
     name: &'static str,
     value: f64,
     min: f64,

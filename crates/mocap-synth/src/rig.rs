@@ -72,7 +72,8 @@ pub(crate) struct Posture {
 
 /// Rotation of each joint relative to its parent.
 pub(crate) fn pose(body: &Body, posture: &Posture) -> Pose {
-    let mut rotations = vec![Rotation::IDENTITY; JOINTS];
+    let mut rotations = Vec::with_capacity(body.skeleton.joints().len());
+    rotations.resize(JOINTS, Rotation::IDENTITY);
     rotations[PELVIS] = posture.pelvis.share(1.0);
     let vertebra = posture.trunk.share(1.0 / 3.0);
     for joint in [LOWER_SPINE, MIDDLE_SPINE, UPPER_SPINE] {
@@ -179,19 +180,33 @@ impl Placed {
     }
 }
 
-/// The joints in the world.
-pub(crate) fn frames(body: &Body, pose: &Pose) -> [Placed; JOINTS] {
-    let mut turns = [Rotation::IDENTITY; JOINTS];
-    let mut placed = [Placed::new([0.0; 3], Rotation::IDENTITY); JOINTS];
-    for (i, joint) in body.skeleton.joints().iter().enumerate() {
-        let (origin, turn) = match joint.parent {
-            None => (add(pose.root_m, joint.offset_m), pose.rotations[i]),
-            Some(p) => (placed[p].point(joint.offset_m), turns[p].after(pose.rotations[i])),
-        };
-        turns[i] = turn;
-        placed[i] = Placed::new(origin, turn);
+/// The joints in the world, and their turns; kept from frame to frame.
+pub(crate) struct Frames {
+    turns: Vec<Rotation>,
+    pub(crate) placed: Vec<Placed>,
+}
+
+impl Frames {
+    pub(crate) fn new(body: &Body) -> Self {
+        let joints = body.skeleton.joints().len();
+        Self {
+            turns: vec![Rotation::IDENTITY; joints],
+            placed: vec![Placed::new([0.0; 3], Rotation::IDENTITY); joints],
+        }
     }
-    placed
+
+    /// Forward kinematics.
+    pub(crate) fn set(&mut self, body: &Body, pose: &Pose) {
+        let Self { turns, placed } = self;
+        for (i, joint) in body.skeleton.joints().iter().enumerate() {
+            let (origin, turn) = match joint.parent {
+                None => (add(pose.root_m, joint.offset_m), pose.rotations[i]),
+                Some(p) => (placed[p].point(joint.offset_m), turns[p].after(pose.rotations[i])),
+            };
+            turns[i] = turn;
+            placed[i] = Placed::new(origin, turn);
+        }
+    }
 }
 
 /// The ankle of a foot that touches the ground and is pitched about its ball or its heel.

@@ -7,6 +7,7 @@ mod detect;
 mod real;
 mod safety;
 mod solve;
+mod synth;
 
 use std::{
     path::{Path, PathBuf},

@@ -2,13 +2,17 @@
 
 mod gait;
 mod jump;
+mod kick;
+mod reach;
+mod steps;
 mod throw;
 mod track;
+mod turn;
 
 use crate::{Activity, body::Body, dice::Dice, rig::Posture};
 
 /// A motion that can be asked for any moment of the take.
-pub(crate) trait Choreography {
+pub(crate) trait Choreography: Send + Sync {
     /// The posture at a time.
     ///
     /// # Units
@@ -30,5 +34,8 @@ pub(crate) fn choreography(
         Activity::Run => Box::new(gait::Gait::new(&gait::RUN, body, seconds, dice)),
         Activity::Jump => Box::new(jump::Jump::new(body, seconds, dice)),
         Activity::Throw => Box::new(throw::Throw::new(body, seconds, dice)),
+        Activity::Turn => Box::new(turn::Turn::new(body, seconds, dice)),
+        Activity::Reach => Box::new(reach::Reach::new(body, seconds, dice)),
+        Activity::Kick => Box::new(kick::Kick::new(body, seconds, dice)),
     }
 }

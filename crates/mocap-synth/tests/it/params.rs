@@ -1,4 +1,4 @@
-use mocap_synth::{Activity, Synth, SynthError, SynthParams};
+use mocap_synth::{Activity, Hands, Layout, Person, Synth, SynthError, SynthParams};
 use proptest::prelude::*;
 
 use crate::record;
@@ -14,6 +14,8 @@ fn every_field_out_of_range_is_refused_by_name() {
         ("stature_m", SynthParams { stature_m: f64::INFINITY, ..ok }),
         ("noise_m", SynthParams { noise_m: -0.001, ..ok }),
         ("noise_m", SynthParams { noise_m: 0.02, ..ok }),
+        ("marker_radius_m", SynthParams { marker_radius_m: 0.031, ..ok }),
+        ("marker_radius_m", SynthParams { marker_radius_m: f64::NAN, ..ok }),
         ("soft_tissue", SynthParams { soft_tissue: 3.5, ..ok }),
         ("soft_tissue", SynthParams { soft_tissue: f64::NAN, ..ok }),
     ];
@@ -62,7 +64,11 @@ proptest! {
 
     #[test]
     fn every_allowed_parameter_gives_a_complete_finite_take(
-        activity in 0_usize..4,
+        activity in 0_usize..7,
+        layout in 0_usize..3,
+        hands in 0_usize..3,
+        person in proptest::option::of(any::<u64>()),
+        marker_radius_m in 0.0..=0.03,
         frames in 1_usize..60,
         rate_hz in 10.0..=2000.0,
         seed in any::<u64>(),
@@ -71,16 +77,31 @@ proptest! {
         soft_tissue in 0.0..=3.0,
     ) {
         let motion = Activity::ALL[activity];
-        let recorded =
-            record(SynthParams { motion, frames, rate_hz, seed, stature_m, noise_m, soft_tissue });
+        let (layout, hands) = (Layout::ALL[layout], Hands::ALL[hands]);
+        let person = person.map(Person::draw);
+        let recorded = record(SynthParams {
+            motion,
+            frames,
+            rate_hz,
+            seed,
+            stature_m,
+            person,
+            layout,
+            hands,
+            marker_radius_m,
+            noise_m,
+            soft_tissue,
+        });
         let take = recorded.take();
-        prop_assert_eq!((take.frames(), take.marker_count()), (frames, 41));
+        let markers = layout.markers().count() + 2 * hands.per_hand();
+        prop_assert_eq!((take.frames(), take.marker_count()), (frames, markers));
+        prop_assert_eq!(recorded.joints().dim(), (frames, if hands == Hands::None { 22 } else { 52 }, 3));
         prop_assert!(take.gaps().is_empty());
         // Nobody reaches higher than 1.9 statures, and no track is wider than 30 m.
         let within = |t: usize, m: usize| {
             let [x, y, z] = take.position(t, m).unwrap();
             x.abs() < 30.0 && y.abs() < 30.0 && (-0.1..1.9 * 2.2).contains(&z)
         };
-        prop_assert!((0..frames).all(|t| (0..41).all(|m| within(t, m))));
+        prop_assert!((0..frames).all(|t| (0..markers).all(|m| within(t, m))));
     }
 }

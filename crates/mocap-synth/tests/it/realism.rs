@@ -70,13 +70,16 @@ fn bones_stretch_like_captured_ones() {
         let (mut deviations, mut ranges) = bone_spread(&take);
         let named = format!("{activity} {seed}");
         let middle = quantile(&mut deviations, 0.5);
-        assert!((0.0014..0.007).contains(&middle), "{named}: median deviation {middle}");
+        // Someone who turns on the spot or reaches for a table hardly bends.
+        let calm = matches!(activity, Activity::Turn | Activity::Reach);
+        let least = if calm { 0.7 } else { 1.0 };
+        assert!((least * 0.0014..0.007).contains(&middle), "{named}: median deviation {middle}");
         let high = quantile(&mut deviations, 0.9);
-        assert!((0.006..0.025).contains(&high), "{named}: 90 % deviation {high}");
+        assert!((least * 0.006..0.025).contains(&high), "{named}: 90 % deviation {high}");
         let top = quantile(&mut deviations, 1.0);
-        assert!((0.015..0.055).contains(&top), "{named}: largest deviation {top}");
+        assert!((least * 0.015..0.055).contains(&top), "{named}: largest deviation {top}");
         let range = quantile(&mut ranges, 0.5);
-        assert!((0.006..0.035).contains(&range), "{named}: median range {range}");
+        assert!((least * 0.006..0.035).contains(&range), "{named}: median range {range}");
     }
 }
 
@@ -90,17 +93,21 @@ fn markers_move_as_fast_as_captured_ones() {
         let usual = match activity {
             Activity::Walk => 1.1..1.8,
             Activity::Run => 2.5..4.4,
-            _ => 0.4..1.6,
+            Activity::Turn | Activity::Reach => 0.15..0.6,
+            _ => 0.3..1.6,
         };
+        // The recordings hold nothing as calm as turning and reaching.
+        let calm = matches!(activity, Activity::Turn | Activity::Reach);
+        let least = if calm { 0.4 } else { 1.0 };
         assert!(usual.contains(&mean), "{named}: mean speed {mean}");
         let high = quantile(&mut speeds, 0.99);
-        assert!((2.0..11.0).contains(&high), "{named}: 99 % speed {high}");
+        assert!((least * 2.0..11.0).contains(&high), "{named}: 99 % speed {high}");
         let top = quantile(&mut speeds, 1.0);
-        assert!((2.8..18.0).contains(&top), "{named}: largest speed {top}");
+        assert!((least * 2.8..18.0).contains(&top), "{named}: largest speed {top}");
         let high = quantile(&mut accelerations, 0.99);
-        assert!((19.0..230.0).contains(&high), "{named}: 99 % acceleration {high}");
+        assert!((least * 19.0..230.0).contains(&high), "{named}: 99 % acceleration {high}");
         let top = quantile(&mut accelerations, 1.0);
-        assert!((60.0..1771.0).contains(&top), "{named}: largest acceleration {top}");
+        assert!((least * 60.0..1771.0).contains(&top), "{named}: largest acceleration {top}");
     }
 }
 

@@ -1,4 +1,4 @@
-use mocap_synth::{Activity, SynthParams};
+use mocap_synth::{Activity, Hands, Layout, Person, SynthParams, record_all};
 
 use crate::{params, record};
 
@@ -65,5 +65,30 @@ fn no_cycle_of_a_gait_is_like_the_one_before() {
         let best = (60..180).map(difference).fold(f64::INFINITY, f64::min);
         // Ankles of one walker differ by 3 to 10 mm from step to step; an exact repeat shows 0.
         assert!((0.002..0.06).contains(&best), "{activity}: {best}");
+    }
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    let crowd: Vec<SynthParams> = (0..9)
+        .zip(0..)
+        .map(|(seed, n): (u64, usize)| SynthParams {
+            frames: 150,
+            person: Some(Person::draw(seed)),
+            layout: Layout::ALL[n % 3],
+            hands: Hands::ALL[n % 3],
+            ..params(Activity::ALL[n % 7], seed)
+        })
+        .collect();
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| record_all(&crowd).unwrap())
+    };
+    let one = on(1);
+    for threads in [2, 3] {
+        for (a, b) in one.iter().zip(on(threads)) {
+            assert!(a.take().bit_eq(b.take()) && a.truth().bit_eq(b.truth()));
+            assert_eq!(a.motion(), b.motion());
+        }
     }
 }

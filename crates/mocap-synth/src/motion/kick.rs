@@ -1,0 +1,191 @@
+use super::{Choreography, LEAD_S};
+use crate::{
+    body::Body,
+    curve::{Timeline, Wobble, ease, lerp},
+    dice::Dice,
+    math::{TAU, degrees, sin_cos},
+    rig::{Arm, FootTarget, Pivot, Posture, Tilt, pitched_ankle},
+};
+
+/// Channels of a kick: place of the pelvis (ahead, left, up), the kicking foot (ahead, left, up); pitch, roll and
+/// turn of the pelvis and of the trunk; flexion, abduction and bend of the right and the left arm; pitch of the head
+/// and of the kicking foot.
+const CHANNELS: usize = 20;
+const KEYS: usize = 10;
+/// The first channels hold lengths; all others hold angles.
+const LENGTHS: usize = 6;
+
+/// Metres of the template and degrees, one row a key; the order of columns is that of the channels.
+#[rustfmt::skip]
+const SCRIPT: [[f64; CHANNELS]; KEYS] = [
+    // Stands.
+    [0.0, 0.0, 0.0,        0.0, 0.0, 0.0,       4.0, 0.0, 0.0,     -2.0, 0.0, 0.0,    2.0, 9.0, 18.0,    2.0, 9.0, 18.0,    0.0, 0.0],
+    // Weight on the right foot; the left one goes ahead.
+    [0.02, -0.055, -0.02,  0.0, 0.0, 0.0,       7.0, 2.0, -6.0,     0.0, -2.0, 4.0,   12.0, 14.0, 30.0,  -6.0, 14.0, 24.0,  10.0, 0.0],
+    // The left foot lands; the right heel comes off.
+    [0.30, 0.010, -0.07,   0.0, 0.0, 0.0,       8.0, 0.0, -14.0,   -2.0, 0.0, 10.0,   -18.0, 22.0, 35.0, 20.0, 50.0, 28.0,  14.0, 42.0],
+    // The kicking leg is back, knee bent, the left arm out.
+    [0.44, 0.050, -0.06,  -0.02, 0.02, 0.44,    10.0, 3.0, -20.0,  -6.0, -4.0, 16.0,  -34.0, 26.0, 38.0, 26.0, 74.0, 26.0,  22.0, 88.0],
+    // Meets the ball.
+    [0.55, 0.055, -0.035,  0.76, 0.00, 0.055,   -2.0, -3.0, 8.0,     8.0, 2.0, -6.0,  -12.0, 30.0, 42.0, 34.0, 52.0, 34.0,  26.0, 34.0],
+    // Follows through.
+    [0.60, 0.050, -0.015,  1.30, 0.06, 0.58,    -10.0, -4.0, 20.0,  20.0, 4.0, -18.0, -22.0, 32.0, 34.0, 50.0, 34.0, 48.0,  10.0, -24.0],
+    // The leg comes down.
+    [0.60, 0.040, -0.025,  0.86, 0.03, 0.16,     2.0, -2.0, 10.0,    6.0, 2.0, -8.0,  -4.0, 22.0, 30.0,  22.0, 26.0, 36.0,  4.0, 0.0],
+    // Both feet side by side.
+    [0.56, 0.010, -0.02,   0.60, 0.00, 0.0,      5.0, 0.0, 2.0,     -1.0, 0.0, 0.0,    2.0, 12.0, 22.0,  4.0, 12.0, 22.0,   2.0, 0.0],
+    // Steps back, the right foot first.
+    [0.34, 0.045, -0.02,   0.28, 0.00, 0.05,     7.0, 2.0, 0.0,      0.0, -2.0, 0.0,   6.0, 11.0, 22.0,  0.0, 11.0, 20.0,   6.0, 16.0],
+    [0.10, -0.03, -0.015,  0.0, 0.0, 0.0,        5.0, 0.0, 0.0,     -1.0, 0.0, 0.0,    1.0, 10.0, 19.0,  4.0, 10.0, 20.0,   3.0, 0.0],
+];
+
+/// Seconds from each key to the next, and from the last to standing.
+const PACE_S: [f64; KEYS] = [0.34, 0.30, 0.17, 0.145, 0.17, 0.33, 0.36, 0.34, 0.32, 0.46];
+
+/// Kicks with the right foot from one spot, one after the other.
+pub(crate) struct Kick {
+    kicks: Vec<Strike>,
+    heading: f64,
+    size: f64,
+    sway: [Wobble; 2],
+    arms: [Wobble; 2],
+    head: [Wobble; 2],
+}
+
+struct Strike {
+    start: f64,
+    end: f64,
+    aim: f64,
+    channels: Timeline<CHANNELS>,
+    /// When the left foot steps ahead and back.
+    step: [f64; 2],
+    back: [f64; 2],
+}
+
+impl Kick {
+    pub(crate) fn new(body: &Body, seconds: f64, dice: &mut Dice) -> Self {
+        let size = body.leg() / 0.852;
+        let slow = |dice: &mut Dice, rms: f64| Wobble::new(dice, rms, 0.1, 0.7);
+        let mut kick = Self {
+            kicks: Vec::new(),
+            heading: dice.uniform(0.0, TAU),
+            size,
+            sway: [0, 1].map(|_| slow(dice, 0.005 * size)),
+            arms: [0, 1].map(|_| slow(dice, degrees(3.0))),
+            head: [0, 1].map(|_| slow(dice, degrees(4.0))),
+        };
+        // A take begins somewhere in a kick, never on a fixed pose.
+        let mut time = -LEAD_S - dice.uniform(0.0, 2.5);
+        while time < seconds + LEAD_S {
+            let strike = Strike::sample(time, size, dice);
+            time = strike.end;
+            kick.kicks.push(strike);
+        }
+        kick
+    }
+
+    /// A point seen from the spot between the feet.
+    fn at(&self, ahead: f64, left: f64) -> [f64; 2] {
+        let (s, c) = sin_cos(self.heading);
+        [c * ahead - s * left, s * ahead + c * left]
+    }
+
+    fn feet(
+        &self,
+        body: &Body,
+        strike: &Strike,
+        time: f64,
+        c: &[f64; CHANNELS],
+    ) -> [FootTarget; 2] {
+        let half = 0.10 * self.size;
+        let share = |[from, to]: [f64; 2]| ease((time - from) / (to - from));
+        let arc = |[from, to]: [f64; 2]| {
+            let u = ((time - from) / (to - from)).clamp(0.0, 1.0);
+            let v = u * (1.0 - u);
+            64.0 * v * v * v
+        };
+        let stride = 0.56 * self.size * (share(strike.step) - share(strike.back));
+        let (out, home) = (arc(strike.step), arc(strike.back));
+        let pitch = degrees(14.0) * home - degrees(6.0) * out;
+        let pivot = if pitch > 0.0 { Pivot::Ball } else { Pivot::Heel };
+        let heading = self.heading + degrees(6.0);
+        let mut left = pitched_ankle(body, self.at(stride, half), heading, pitch, pivot);
+        left[2] += self.size * (0.09 * out + 0.06 * home);
+        let heading_r = self.heading - degrees(8.0);
+        // On the floor the foot turns about its ball; in the air the toes do not matter.
+        let flat = self.at(c[3], c[4] - half);
+        let mut right = pitched_ankle(body, flat, heading_r, c[19].max(0.0), Pivot::Ball);
+        right[2] += c[5];
+        let grounded = 1.0 - ease(c[5] / (0.06 * self.size));
+        [
+            FootTarget { ankle: left, heading, pitch, toe: 0.0 },
+            FootTarget {
+                ankle: right,
+                heading: heading_r,
+                pitch: c[19],
+                toe: c[19].max(0.0) * grounded,
+            },
+        ]
+    }
+}
+
+impl Strike {
+    fn sample(start: f64, size: f64, dice: &mut Dice) -> Self {
+        let mut time = start + dice.uniform(0.1, 0.8);
+        let pace = dice.around(1.0, 0.07);
+        let vigour: [f64; CHANNELS] = std::array::from_fn(|_| dice.around(1.0, 0.06));
+        let mut keys = vec![(start, Self::values(0, size, &vigour))];
+        for (key, length) in PACE_S.into_iter().enumerate() {
+            keys.push((time, Self::values(key, size, &vigour)));
+            time += pace * dice.around(length, 0.04);
+        }
+        keys.push((time, Self::values(0, size, &vigour)));
+        let (step, back) = ([keys[1].0 + 0.1, keys[3].0], [keys[9].0, keys[11].0 - 0.1]);
+        let aim = degrees(dice.jitter(5.0));
+        Self { start, end: time, aim, channels: Timeline::new(&keys), step, back }
+    }
+
+    /// One row of the script for this body, with this kick's vigour in every channel.
+    fn values(key: usize, size: f64, vigour: &[f64; CHANNELS]) -> [f64; CHANNELS] {
+        let rest = &SCRIPT[0];
+        std::array::from_fn(|n| {
+            let value = rest[n] + vigour[n] * (SCRIPT[key][n] - rest[n]);
+            if n < LENGTHS { value * size } else { degrees(value) }
+        })
+    }
+}
+
+impl Choreography for Kick {
+    fn posture(&self, body: &Body, time: f64) -> Posture {
+        let index = self.kicks.partition_point(|k| k.start <= time).saturating_sub(1);
+        let strike = &self.kicks[index];
+        let c = strike.channels.at(time);
+        let busy =
+            ease((time - strike.step[0]) / 0.4) * (1.0 - ease((time - strike.back[0]) / 0.5));
+        let aim = lerp(0.0, strike.aim, busy);
+        let [sway_x, sway_y] = [0, 1].map(|i| self.sway[i].at(time));
+        let [x, y] = self.at(c[0] + sway_x, c[1] + sway_y);
+        let arm = |i: usize, from: usize| Arm {
+            flexion: c[from] + self.arms[i].at(time),
+            abduction: c[from + 1],
+            outward: degrees(-18.0),
+            elbow: c[from + 2] + 0.6 * self.arms[1 - i].at(time),
+            pronation: degrees(25.0),
+            wrist: degrees(3.0),
+            shrug: 0.10 * c[from + 1],
+            across: 0.0,
+        };
+        Posture {
+            pelvis_m: [x, y, body.standing() - 0.012 * body.leg() + c[2]],
+            pelvis: Tilt { pitch: c[6], roll: c[7], yaw: self.heading + c[8] + aim },
+            trunk: Tilt { pitch: c[9], roll: c[10], yaw: c[11] },
+            head: Tilt {
+                pitch: c[18] + self.head[0].at(time),
+                roll: 0.0,
+                yaw: -0.8 * (c[8] + c[11]) + self.head[1].at(time),
+            },
+            arms: [arm(0, 15), arm(1, 12)],
+            feet: self.feet(body, strike, time, &c),
+        }
+    }
+}
