@@ -1,6 +1,9 @@
 //! The covariance half of the Rauch–Tung–Striebel smoother.
 
-use crate::{forward::Forward, kernel};
+use crate::{
+    forward::{Forward, Settling},
+    kernel,
+};
 
 /// Smoothed covariances of one backward pass, shared between frames once they are stationary.
 #[derive(Debug, Default)]
@@ -40,6 +43,7 @@ impl Backward {
         let Some(last) = steps.len().checked_sub(1) else { return };
         self.blocks.extend_from_slice(forward.filtered(steps[last]));
         self.blocks.resize(2 * size, 0.0);
+        let mut settling = Settling::new(tolerance);
         let mut settled = false;
         for t in (0..last).rev() {
             let same_step = steps[t] == steps[t + 1];
@@ -52,9 +56,12 @@ impl Backward {
             self.blocks.resize(start + 2 * size, 0.0);
             let (done, new) = self.blocks.split_at_mut(start);
             let later = &done[2 * next * size..][..size];
-            let step = EarlierStep { forward, step: steps[t], later, new };
-            let (scale, change) = kernel::fast(n, step);
-            settled = same_step && change <= tolerance * scale;
+            let step = EarlierStep { forward, step: steps[t], later, new: &mut *new };
+            kernel::fast(n, step);
+            settled = same_step && settling.step(later, &new[..size]);
+            if !same_step {
+                settling = Settling::new(tolerance);
+            }
             self.block_of[t] = start / (2 * size);
         }
     }
@@ -93,8 +100,7 @@ impl Backward {
     }
 }
 
-/// Computes the covariances of a frame from that of the next; its largest entry and the largest
-/// change between the two.
+/// Computes the covariances of a frame from that of the next.
 struct EarlierStep<'a> {
     forward: &'a Forward,
     step: usize,
@@ -103,11 +109,11 @@ struct EarlierStep<'a> {
 }
 
 impl kernel::Job for EarlierStep<'_> {
-    type Output = (f64, f64);
+    type Output = ();
 
     #[allow(clippy::inline_always, reason = "the job takes on the vectors of its caller")]
     #[inline(always)]
-    fn run(self, n: usize) -> (f64, f64) {
+    fn run(self, n: usize) {
         let Self { forward, step, later, new } = self;
         let (covariance, lag) = new.split_at_mut(n * n);
         let gain = forward.gain_transposed(step);
@@ -115,6 +121,5 @@ impl kernel::Job for EarlierStep<'_> {
         kernel::multiply_transposed(gain, lag, covariance, n);
         kernel::add_scaled(covariance, 1.0, forward.conditional(step));
         kernel::symmetrize(covariance, n);
-        kernel::magnitude_and_change(covariance, later)
     }
 }

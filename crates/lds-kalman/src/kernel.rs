@@ -53,7 +53,11 @@ fn multiply_strided(a: &[f64], row: usize, column: usize, b: &[f64], out: &mut [
             let mut sums = [[0.0; BLOCK]; ROWS];
             for k in 0..n {
                 let b_row = &b[k * n + start..][..BLOCK];
-                let factors: [f64; ROWS] = std::array::from_fn(|r| a[(i + r) * row + k * column]);
+                // A loop: a closure per element would not always be inlined.
+                let mut factors = [0.0; ROWS];
+                for (r, factor) in factors.iter_mut().enumerate() {
+                    *factor = a[(i + r) * row + k * column];
+                }
                 add_outer(&mut sums, &factors, b_row);
             }
             for (r, sum) in sums.iter().enumerate() {
@@ -216,14 +220,8 @@ pub(crate) fn solve_lower(factor: &[f64], b: &mut [f64], n: usize, columns: usiz
     let (factor, b) = (&factor[..n * n], &mut b[..n * columns]);
     for i in 0..n {
         let (done, rest) = b.split_at_mut(i * columns);
-        let row = &mut rest[..columns];
-        for k in 0..i {
-            add_scaled(row, -factor[k * n + i], &done[k * columns..(k + 1) * columns]);
-        }
-        let scale = factor[i * n + i].recip();
-        for x in row {
-            *x *= scale;
-        }
+        let weights = (0..i).map(|k| factor[k * n + i]);
+        eliminate(&mut rest[..columns], weights.zip(done.chunks_exact(columns)), factor[i * n + i]);
     }
 }
 
@@ -233,14 +231,44 @@ fn solve_upper(factor: &[f64], b: &mut [f64], n: usize, columns: usize) {
     let (factor, b) = (&factor[..n * n], &mut b[..n * columns]);
     for i in (0..n).rev() {
         let (head, done) = b.split_at_mut((i + 1) * columns);
-        let row = &mut head[i * columns..];
-        for k in i + 1..n {
-            add_scaled(row, -factor[i * n + k], &done[(k - i - 1) * columns..][..columns]);
+        let weights = factor[i * n + i + 1..(i + 1) * n].iter().copied();
+        let done = weights.zip(done.chunks_exact(columns));
+        eliminate(&mut head[i * columns..], done, factor[i * n + i]);
+    }
+}
+
+/// Takes the weighted rows that are solved off the next one and divides it by its pivot.
+#[inline(always)]
+fn eliminate<'a>(
+    row: &mut [f64],
+    done: impl Iterator<Item = (f64, &'a [f64])> + Clone,
+    pivot: f64,
+) {
+    let scale = pivot.recip();
+    let blocked = row.len() - row.len() % BLOCK;
+    for start in (0..blocked).step_by(BLOCK) {
+        let block = &mut row[start..][..BLOCK];
+        let mut sums = [0.0; BLOCK];
+        sums.copy_from_slice(block);
+        for (weight, done) in done.clone() {
+            let done = &done[start..][..BLOCK];
+            for c in 0..BLOCK {
+                sums[c] -= weight * done[c];
+            }
         }
-        let scale = factor[i * n + i].recip();
-        for x in row {
-            *x *= scale;
+        for c in 0..BLOCK {
+            block[c] = sums[c] * scale;
         }
+    }
+    let rest = &mut row[blocked..];
+    if rest.is_empty() {
+        return;
+    }
+    for (weight, done) in done {
+        add_scaled(rest, -weight, &done[blocked..]);
+    }
+    for x in rest {
+        *x *= scale;
     }
 }
 

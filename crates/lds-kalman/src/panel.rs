@@ -137,11 +137,11 @@ fn correlate_columns<const R: usize>(
     start: usize,
     out: &mut [f64],
 ) {
-    let mut sums: [[f64; BLOCK]; R] =
-        std::array::from_fn(|r| std::array::from_fn(|c| out[(first + r) * n + start + c]));
+    // Sums that begin at zero and arrays of fixed length: with either missing they leave the registers.
+    let mut sums = [[0.0; BLOCK]; R];
     for (x, z) in x.chunks_exact(m).zip(z.chunks_exact(n)) {
-        let factors = &x[first..][..R];
-        let row = &z[start..][..BLOCK];
+        let factors: &[f64; R] = x[first..][..R].try_into().expect("a slice of this length");
+        let row: &[f64; BLOCK] = z[start..][..BLOCK].try_into().expect("a slice of this length");
         for r in 0..R {
             for c in 0..BLOCK {
                 sums[r][c] += factors[r] * row[c];
@@ -149,7 +149,7 @@ fn correlate_columns<const R: usize>(
         }
     }
     for (r, sum) in sums.iter().enumerate() {
-        out[(first + r) * n + start..][..BLOCK].copy_from_slice(sum);
+        add_scaled(&mut out[(first + r) * n + start..][..BLOCK], 1.0, sum);
     }
 }
 
