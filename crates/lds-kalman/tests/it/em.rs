@@ -27,7 +27,6 @@ fn wave(frames: usize, dimensions: usize) -> Array2<f64> {
 fn exact_em_never_lowers_the_likelihood() {
     let forms =
         [CovarianceStructure::Isotropic, CovarianceStructure::Diagonal, CovarianceStructure::Full];
-    let mut stalled = 0;
     for seed in 0..200_u64 {
         let mut random = Random::new(seed);
         let (dimensions, frames) = (random.size(2, 8), random.size(5, 30));
@@ -52,9 +51,8 @@ fn exact_em_never_lowers_the_likelihood() {
             assert!(pair[1] >= pair[0] - 1e-6 * (1.0 + pair[0].abs()), "seed {seed}: {pair:?}");
         }
         assert!(fit.filled.iter().all(|x| x.is_finite()), "seed {seed}");
-        stalled += usize::from(fit.termination == Termination::Stalled);
+        assert_ne!(fit.termination, Termination::Stalled, "seed {seed}");
     }
-    assert!(stalled <= 4, "{stalled} of 200 fits broke down");
 }
 
 #[test]
