@@ -13,6 +13,10 @@ use crate::{
     solver,
 };
 
+/// Markers that may fall on either side of the planes that mirror their bones, in almost any gap. Where
+/// more are missing together they hold each other, and starts become dear: there are fewer.
+const FEW: usize = 6;
+
 /// Puts the missing markers of each frame where all bones have their length, as close to the
 /// prediction as they get. Where the bones contradict each other, their least-squares compromise
 /// stands.
@@ -29,7 +33,7 @@ pub struct HardBones {
 
 impl HardBones {
     /// A hook for observations with these columns that acts from this iteration on, counted from
-    /// 1. Bones at markers that are never seen are left out.
+    /// 1, or in the last one. Bones at markers that are never seen are left out.
     #[must_use]
     pub fn new(columns: &Columns, bones: &BoneSet, first_iteration: usize) -> Self {
         let place: HashMap<usize, usize> =
@@ -88,7 +92,8 @@ impl Frames<'_> {
         let near = if self.nudges > 0 { &near[..] } else { &near[..1] };
         let others: Vec<Vec<f64>> =
             near.iter().map(|&near| group.gather(&self.before.row(near).to_vec())).collect();
-        solver::solve(&problem, &others, self.nudges).places
+        let nudges = self.nudges * FEW / group.unknown.len().max(FEW);
+        solver::solve(&problem, &others, nudges).places
     }
 }
 
@@ -96,7 +101,8 @@ impl MissingUpdate for HardBones {
     fn update(&mut self, context: &UpdateContext<'_>, missing: &mut MissingEntries<'_>) {
         let before: Array2<f64> = missing.values().to_owned();
         missing.fill_from(context.prediction);
-        if context.iteration < self.first_iteration {
+        let first = self.first_iteration.min(context.iterations);
+        if context.iteration < first {
             return;
         }
         let (plans, jobs) = self.plans(context.mask);
@@ -108,7 +114,7 @@ impl MissingUpdate for HardBones {
             weight: precision.iter().map(|p| p / mean).collect(),
             // Whether bones can be kept depends on what is seen alone: a search that has succeeded
             // lives on in the fill, from which later iterations start as well.
-            nudges: if context.iteration == self.first_iteration { solver::WIDE } else { 0 },
+            nudges: if context.iteration == first { solver::WIDE } else { 0 },
         };
         let solved: Vec<Vec<Vec<f64>>> = jobs
             .par_iter()

@@ -13,7 +13,8 @@ use crate::{
     solver::{Scratch, Solver},
 };
 
-/// The bones act from this iteration on; the prediction of the first is that of no model yet.
+/// The bones act from this iteration on, or in the last one: the prediction of the first may be that of
+/// no model yet.
 const FIRST_ITERATION: usize = 2;
 
 /// So many seen markers tell more coordinates than the usual model has hidden dimensions, 16.
@@ -159,7 +160,7 @@ impl SoftBones {
 impl MissingUpdate for SoftBones {
     fn update(&mut self, context: &UpdateContext<'_>, missing: &mut MissingEntries<'_>) {
         missing.fill_from(context.prediction);
-        if context.iteration < FIRST_ITERATION || self.lambda <= 0.0 {
+        if context.iteration < FIRST_ITERATION.min(context.iterations) || self.lambda <= 0.0 {
             return;
         }
         let (plans, jobs) = self.plans(context.mask);

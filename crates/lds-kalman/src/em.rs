@@ -87,6 +87,8 @@ impl EmParams {
 pub struct UpdateContext<'a> {
     /// Iteration, counted from 1.
     pub iteration: usize,
+    /// Most iterations there will be.
+    pub iterations: usize,
     /// What the model expects to observe, `G E[z]`, `(T, m)`, in frames that miss an entry; zero in
     /// the others.
     pub prediction: ArrayView2<'a, f64>,
@@ -310,6 +312,7 @@ impl Loop<'_> {
         self.pass.predict(&self.dynamics, frames, &mut self.prediction);
         let context = UpdateContext {
             iteration: self.trace.len(),
+            iterations: self.params.iterations,
             prediction: self.prediction.view(),
             observation_noise: self.model.observation_noise(),
             mask: self.observations.mask(),

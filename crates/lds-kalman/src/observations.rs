@@ -113,6 +113,11 @@ impl Observations {
         self.observed
     }
 
+    /// Number of entries observed in the frame that shows fewest.
+    pub(crate) fn fewest_observed(&self) -> usize {
+        self.patterns.iter().map(|pattern| pattern.observed.len()).min().unwrap_or(0)
+    }
+
     /// The values, `(T, m)`, zero where missing.
     #[must_use]
     pub fn values(&self) -> ArrayView2<'_, f64> {

@@ -26,7 +26,7 @@ fn model(
     structure: &NoiseStructure,
 ) -> Option<LdsModel> {
     let floor = structure.variance_floor;
-    let dark = observations.patterns().iter().any(|pattern| pattern.observed.len() < hidden);
+    let dark = observations.fewest_observed() < hidden;
     let velocities = if dark { hidden / 2 } else { 0 };
     let places = hidden - velocities;
     let basis = Basis::new(observations, places, floor)?;

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use lds_kalman::{
     EStep,
-    filler::{Coordinates, Hidden, LdsFiller, LdsFillerParams},
+    filler::{Coordinates, Dark, Hidden, LdsFiller, LdsFillerParams},
 };
 use mocap_core::{
-    CellState, CoreError, FillError, GapFiller, MarkerKnowledge, MarkerSet, Mask, Take,
+    CellState, CoreError, FillError, GapFiller, Holdout, MarkerKnowledge, MarkerSet, Mask, Take,
 };
 use mocap_testkit::{Claims, articulated_take, conformance};
 use ndarray::Array3;
@@ -54,6 +54,28 @@ fn short_takes_get_a_model_that_fits_them_and_greedy_users_an_error() {
     let error = greedy.fill(&take).unwrap_err();
     let FillError::Method { method: "lds", source } = error else { panic!("{error}") };
     assert!(source.to_string().contains("at most 24"), "{source}");
+}
+
+#[test]
+fn a_take_with_dark_frames_keeps_its_pace_and_asks_for_no_further_iteration() {
+    let truth = articulated_take(200, 4);
+    let dark = |span: std::ops::Range<usize>| {
+        Mask::from_fn(200, truth.marker_count(), move |t, _| span.contains(&t))
+    };
+    let hidden = Holdout::new(truth.clone(), &dark(90..110)).unwrap();
+    let error = |params: LdsFillerParams| {
+        let filled = lds(params).fill(hidden.visible()).unwrap();
+        (mocap_testkit::mse(&hidden, filled.take()), filled.report().iterations)
+    };
+    let (steady, iterations) = error(LdsFillerParams::default());
+    assert_eq!(iterations, 1);
+    let (learnt, more) =
+        error(LdsFillerParams { dark: Dark::Learnt, ..LdsFillerParams::default() });
+    assert!(more > 1);
+    assert!(steady < learnt, "steady {steady:.1e} m², learnt {learnt:.1e} m²");
+    // One hidden marker of eight leaves enough to learn from.
+    let one = hidden_in(&truth, 90..110, 2);
+    assert!(lds(LdsFillerParams::default()).fill(&one).unwrap().report().iterations > 1);
 }
 
 #[test]
