@@ -6,6 +6,7 @@ mod process;
 mod pseudo_gap;
 mod rows;
 mod scene;
+mod tile;
 mod variant;
 
 use std::{collections::BTreeMap, ops::Range, rc::Rc};
@@ -17,10 +18,10 @@ use mocap_core::{
 
 pub use self::pseudo_gap::{PseudoGap, Sides, pseudo_gaps};
 use self::{
-    process::Process,
+    process::{LeftOut, Process},
     rows::Rows,
-    scene::{Sample, Scene},
-    variant::{RESIDUALS, VARIANTS, Variant},
+    scene::{Frames, Sample, Scene},
+    variant::{RESIDUALS, VARIANTS},
 };
 use crate::{
     LocalRidgeParams, Residual,
@@ -152,7 +153,7 @@ impl<'a> Ensemble<'a> {
             take: self.take,
             target,
             neighbours: &neighbours,
-            reference: rows.len() / 2,
+            reference: rows.middle(),
             rows: rows.frames(),
             wanted: &wanted,
         };
@@ -161,17 +162,19 @@ impl<'a> Ensemble<'a> {
     }
 
     fn candidates(&self, sample: &Sample<'_>, rows: &Rows, part: &Part) -> Vec<Candidate> {
+        let rate_hz = self.take.rate_hz();
+        let carried = RESIDUALS.map(|residual| Carried::of(residual, part, rows, rate_hz));
         let mut candidates = Vec::new();
-        for of_view in VARIANTS.chunk_by(|a, b| a.view == b.view) {
-            let scene = Scene::new(sample, of_view[0].view);
-            for variant in of_view {
-                let rate_hz = self.take.rate_hz();
-                let Some(process) = Process::fit(&scene, sample.rows, rate_hz, variant.kernel)
-                else {
-                    continue;
-                };
-                let trial = Trial { sample, rows, part, scene: &scene, process: &process, rate_hz };
-                candidates.extend(trial.candidates(variant));
+        for carried_alike in VARIANTS.chunk_by(|a, b| a.view.carrier == b.view.carrier) {
+            let frames = Rc::new(Frames::new(sample, carried_alike[0].view.carrier));
+            for of_view in carried_alike.chunk_by(|a, b| a.view == b.view) {
+                let scene = Scene::new(sample, Rc::clone(&frames), of_view[0].view);
+                for variant in of_view {
+                    let fitted = Process::fit(&scene, rows.apart(), rate_hz, variant.kernel);
+                    let Some(process) = fitted else { continue };
+                    let trial = Trial { rows, part, frames: &frames, process: &process };
+                    candidates.extend(trial.candidates(variant.name, &carried));
+                }
             }
         }
         candidates.retain(|c: &Candidate| c.positions.iter().flatten().all(|x| x.is_finite()));
@@ -179,105 +182,109 @@ impl<'a> Ensemble<'a> {
     }
 }
 
+/// By how much border errors count in the frames between: the one before and the one after.
+struct Carried {
+    gap: Vec<[f64; 2]>,
+    /// For the scored frames of each pseudo-gap.
+    tried: Vec<Vec<[f64; 2]>>,
+}
+
+impl Carried {
+    fn of(residual: Residual, part: &Part, rows: &Rows, rate_hz: f64) -> Self {
+        let at = |t: usize, frames: &Range<usize>, sides: Sides| {
+            let before = sides.left.then(|| t + 1 - frames.start);
+            let after = sides.right.then(|| frames.end - t);
+            let Weights { left, right } = weights(residual, rate_hz, before, after);
+            [left, right].map(|weight| weight.map_or(0.0, |w| w.0))
+        };
+        let [before, after] = borders(rows, &part.frames, part.sides);
+        let sides = Sides { left: before.is_some(), right: after.is_some() };
+        let tried = part.pseudo_gaps.iter().zip(&part.scored);
+        Self {
+            gap: part.frames.clone().map(|t| at(t, &part.frames, sides)).collect(),
+            tried: tried
+                .map(|(gap, scored)| {
+                    scored.iter().map(|&t| at(t, &gap.frames, gap.sides)).collect()
+                })
+                .collect(),
+        }
+    }
+}
+
+/// The rows of the observed samples beside a run of frames.
+fn borders(rows: &Rows, frames: &Range<usize>, sides: Sides) -> [Option<usize>; 2] {
+    let before = frames.start.checked_sub(1).filter(|_| sides.left);
+    let after = Some(frames.end).filter(|_| sides.right);
+    [before, after].map(|t| t.and_then(|t| rows.index(t)))
+}
+
 /// One variant, fitted.
 struct Trial<'a> {
-    sample: &'a Sample<'a>,
     rows: &'a Rows,
     part: &'a Part,
-    scene: &'a Scene,
+    frames: &'a Frames,
     process: &'a Process<'a>,
-    rate_hz: f64,
-}
-
-/// A run of predicted frames with the errors at its borders.
-struct Bridge {
-    frames: Range<usize>,
-    left: Option<[f64; 3]>,
-    right: Option<[f64; 3]>,
-}
-
-impl Bridge {
-    /// The border errors carried to frame `t`.
-    fn at(&self, t: usize, residual: Residual, rate_hz: f64) -> [f64; 3] {
-        let before = self.left.map(|_| t + 1 - self.frames.start);
-        let after = self.right.map(|_| self.frames.end - t);
-        let Weights { left, right } = weights(residual, rate_hz, before, after);
-        let part = |weight: Option<(f64, usize)>, error: Option<[f64; 3]>| {
-            scale(weight.map_or(0.0, |w| w.0), error.unwrap_or_default())
-        };
-        add(part(left, self.left), part(right, self.right))
-    }
 }
 
 impl Trial<'_> {
-    fn candidates(&self, variant: &Variant) -> Vec<Candidate> {
-        let predicted = self.process.predict(self.sample.wanted);
-        let reach = Reach::of(self.scene.target.iter().copied());
-        let predicted: Vec<[f64; 3]> = predicted
+    fn candidates(&self, name: &'static str, carried: &[Carried]) -> Vec<Candidate> {
+        let (part, mean) = (self.part, self.frames.mean);
+        let reach = Reach::of(self.frames.target.iter().copied());
+        let predicted: Vec<[f64; 3]> = self
+            .process
+            .predict()
             .into_iter()
-            .map(|p| add(reach.limit(sub(p, self.scene.mean)), self.scene.mean))
+            .map(|p| add(reach.limit(sub(p, mean)), mean))
             .collect();
-        let frames = self.part.frames.clone();
-        let known = |t: Option<usize>| {
-            t.and_then(|t| self.rows.index(t)).map(|row| self.process.residual(row))
+        let residual = |row: Option<usize>| row.map(|row| self.process.residual(row));
+        let borders = borders(self.rows, &part.frames, part.sides).map(residual);
+        let tried: Vec<LeftOut> =
+            part.pseudo_gaps.iter().filter_map(|gap| self.leave_out(gap)).collect();
+        if tried.len() < part.pseudo_gaps.len() {
+            return Vec::new();
+        }
+        let place = |((&p, frame), weights): ((&[f64; 3], &LocalFrame), &[f64; 2])| {
+            frame.to_world(add(p, carry(*weights, borders)))
         };
-        let Sides { left, right } = self.part.sides;
-        let gap = Bridge {
-            left: known(frames.start.checked_sub(1).filter(|_| left)),
-            right: known(Some(frames.end).filter(|_| right)),
-            frames,
-        };
-        let tried: Vec<Tried> =
-            self.part.pseudo_gaps.iter().filter_map(|g| self.leave_out(g)).collect();
-        let of_residual = |&residual: &Residual| Candidate {
-            name: variant.name,
-            positions: self
-                .sample
-                .wanted
+        let candidate = |carried: &Carried| Candidate {
+            name,
+            positions: predicted
                 .iter()
-                .zip(&predicted)
-                .zip(&self.scene.wanted_frames)
-                .map(|((&t, &p), frame)| frame.to_world(add(p, gap.at(t, residual, self.rate_hz))))
+                .zip(&self.frames.wanted)
+                .zip(&carried.gap)
+                .map(place)
                 .collect(),
-            errors: tried.iter().map(|tried| self.errors(tried, residual)).collect(),
+            errors: (0..tried.len()).map(|g| self.errors(g, &tried[g], carried)).collect(),
         };
-        RESIDUALS.iter().map(of_residual).collect()
+        carried.iter().map(candidate).collect()
     }
 
-    /// The process without a pseudo-gap; without errors where the rest says nothing.
-    fn leave_out(&self, gap: &PseudoGap) -> Option<Tried> {
-        let hidden = self.rows.range(&gap.hidden);
-        let left_out = self.process.leave_out(&hidden)?;
-        let bridge = Bridge {
-            frames: gap.frames.clone(),
-            left: left_out.before.filter(|_| gap.sides.left),
-            right: left_out.after.filter(|_| gap.sides.right),
-        };
-        let scored = self.rows.range(&gap.frames);
-        let errors =
-            left_out.errors[scored.start - hidden.start..scored.end - hidden.start].to_vec();
-        Some(Tried { rows: scored, errors, bridge })
+    /// The process without a pseudo-gap; `None` where the rest says nothing.
+    fn leave_out(&self, gap: &PseudoGap) -> Option<LeftOut> {
+        let [before, after] = borders(self.rows, &gap.frames, gap.sides);
+        self.process.leave_out(&self.rows.range(&gap.hidden), before, after)
     }
 
-    fn errors(&self, tried: &Tried, residual: Residual) -> Vec<[f64; 3]> {
-        let frame = |row: usize| -> LocalFrame { self.scene.row_frames[row] };
-        tried
-            .rows
-            .clone()
-            .zip(&tried.errors)
-            .map(|(row, &error)| {
-                let carried = tried.bridge.at(self.sample.rows[row], residual, self.rate_hz);
-                frame(row).turn_out(sub(error, carried))
+    /// Errors in the scored frames of pseudo-gap `g`.
+    fn errors(&self, g: usize, left_out: &LeftOut, carried: &Carried) -> Vec<[f64; 3]> {
+        let gap = &self.part.pseudo_gaps[g];
+        let (scored, hidden) = (self.rows.range(&gap.frames), self.rows.range(&gap.hidden));
+        let errors = &left_out.errors[scored.start - hidden.start..scored.end - hidden.start];
+        let borders = [left_out.before, left_out.after];
+        scored
+            .zip(errors)
+            .zip(&carried.tried[g])
+            .map(|((row, &error), weights)| {
+                self.frames.rows[row].turn_out(sub(error, carry(*weights, borders)))
             })
             .collect()
     }
 }
 
-/// One pseudo-gap, filled by one variant: local errors of its rows before borders are carried.
-struct Tried {
-    rows: Range<usize>,
-    errors: Vec<[f64; 3]>,
-    bridge: Bridge,
+/// The border errors carried to a frame.
+fn carry(weights: [f64; 2], borders: [Option<[f64; 3]>; 2]) -> [f64; 3] {
+    let [before, after] = borders.map(Option::unwrap_or_default);
+    add(scale(weights[0], before), scale(weights[1], after))
 }
 
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // fractions of a second

@@ -1,24 +1,22 @@
 //! A Gaussian process fitted to one scene, with pseudo-gaps left out of it.
+#![allow(clippy::inline_always, reason = "a kernel must take on the vectors of its caller")]
 
 use std::ops::Range;
 
-use ndarray::s;
-
 use super::{
-    factor::{Inverse, solve_small},
-    kernel::Kernel,
+    factor::{Factor, Tail, dot},
+    kernel::{Kernel, Timed},
     scene::Scene,
 };
 
 /// The process given all rows.
 pub(super) struct Process<'a> {
     scene: &'a Scene,
-    rows: &'a [usize],
-    rate_hz: f64,
-    kernel: Kernel,
-    inverse: Inverse,
-    /// `K⁻¹ y`, `(rows, 3)`.
-    weights: Vec<[f64; 3]>,
+    kernel: Timed,
+    noise: f64,
+    tail: Tail,
+    /// `K⁻¹ y`, by coordinate.
+    weights: [Vec<f64>; 3],
 }
 
 /// Errors that the process makes in rows that it has not seen, observed minus predicted, in local
@@ -32,54 +30,85 @@ pub(super) struct LeftOut {
 }
 
 impl<'a> Process<'a> {
-    /// `None` where the covariances are not positive, which takes positions that are not finite.
-    pub fn fit(scene: &'a Scene, rows: &'a [usize], rate_hz: f64, kernel: Kernel) -> Option<Self> {
-        let covariance = kernel.within(scene.within(rows), rate_hz);
-        let inverse = Inverse::of(rows.len(), covariance)?;
-        let weights = inverse.solve(&scene.target);
-        Some(Self { scene, rows, rate_hz, kernel, inverse, weights })
+    /// The process by a kernel, ready to leave out rows from `apart` on; `None` where the covariances are not
+    /// positive, which takes positions that are not finite.
+    pub fn fit(scene: &'a Scene, apart: usize, rate_hz: f64, kernel: Kernel) -> Option<Self> {
+        let timed = kernel.timed(scene.lags(), rate_hz);
+        let factor = Factor::of(timed.within(scene.within(), scene.rows()))?;
+        let weights = factor.solve(&scene.frames.target);
+        let tail = factor.tail(apart);
+        Some(Self { scene, kernel: timed, noise: kernel.noise, tail, weights })
     }
 
     /// Local positions in the wanted frames.
-    pub fn predict(&self, wanted: &[usize]) -> Vec<[f64; 3]> {
-        let covariance = self.kernel.between(self.scene.between(wanted, self.rows), self.rate_hz);
-        covariance
-            .chunks_exact(self.rows.len())
-            .map(|row| {
-                let sum = row.iter().zip(&self.weights).fold([0.0; 3], |sum: [f64; 3], (k, w)| {
-                    std::array::from_fn(|a| sum[a] + k * w[a])
-                });
-                std::array::from_fn(|a| self.scene.mean[a] + sum[a])
-            })
-            .collect()
+    pub fn predict(&self) -> Vec<[f64; 3]> {
+        pulp::Arch::new().dispatch(Predict { process: self })
     }
 
     /// What is left of the error in a row that the process has seen.
     pub fn residual(&self, row: usize) -> [f64; 3] {
-        self.weights[row].map(|w| self.kernel.noise * w)
+        self.weight(row).map(|w| self.noise * w)
     }
 
-    /// The errors without the rows `hidden`, and in the rows just beside them.
+    fn weight(&self, row: usize) -> [f64; 3] {
+        std::array::from_fn(|a| self.weights[a][row])
+    }
+
+    /// The errors without the rows `hidden`, and in the rows just beside them, `before` and `after`.
     ///
     /// From blocks of the inverse: the errors of the left-out rows B are (K⁻¹)_BB⁻¹ (K⁻¹ y)_B, as in
     /// [RW06] Eq. (5.12) for one row.
-    pub fn leave_out(&self, hidden: &Range<usize>) -> Option<LeftOut> {
-        let around = hidden.start.saturating_sub(1)..(hidden.end + 1).min(self.rows.len());
-        let block = self.inverse.block(&around);
+    pub fn leave_out(
+        &self,
+        hidden: &Range<usize>,
+        before: Option<usize>,
+        after: Option<usize>,
+    ) -> Option<LeftOut> {
+        let least = before.map_or(hidden.start, |row| row.min(hidden.start));
+        let around = least..after.map_or(hidden.end, |row| (row + 1).max(hidden.end));
+        let block = self.tail.block(&around);
         let own = hidden.start - around.start..hidden.end - around.start;
-        let errors = solve_small(
-            block.slice(s![own.clone(), own.clone()]).iter().copied().collect(),
-            self.weights[hidden.clone()].to_vec(),
-        )?;
+        let weights: Vec<[f64; 3]> = hidden.clone().map(|row| self.weight(row)).collect();
+        let columns = Factor::of(block.part(&own))?.solve(&weights);
         let beside = |row: usize| {
-            let cross = block.slice(s![row - around.start, own.clone()]);
-            let weight = cross.iter().zip(&errors).fold(self.weights[row], |weight, (k, e)| {
-                std::array::from_fn(|a| weight[a] - k * e[a])
-            });
-            weight.map(|w| self.kernel.noise * w)
+            let at = row - around.start;
+            // Only the lower triangle is there.
+            let cell = |k: usize| if k < at { block.row(at)[k] } else { block.row(k)[at] };
+            let weight = self.weight(row);
+            std::array::from_fn(|a| {
+                let sum: f64 = own.clone().map(cell).zip(&columns[a]).map(|(k, e)| k * e).sum();
+                self.noise * (weight[a] - sum)
+            })
         };
-        let before = (around.start < hidden.start).then(|| beside(around.start));
-        let after = (hidden.end < around.end).then(|| beside(hidden.end));
-        Some(LeftOut { errors, before, after })
+        Some(LeftOut {
+            errors: (0..hidden.len()).map(|k| std::array::from_fn(|a| columns[a][k])).collect(),
+            before: before.map(beside),
+            after: after.map(beside),
+        })
+    }
+}
+
+struct Predict<'a> {
+    process: &'a Process<'a>,
+}
+
+impl pulp::WithSimd for Predict<'_> {
+    type Output = Vec<[f64; 3]>;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> Self::Output {
+        let Process { scene, kernel, weights, .. } = self.process;
+        let (rows, wanted) = (scene.rows(), scene.wanted());
+        let mut covariance = vec![0.0; rows.frames.len()];
+        // Loops, not closures: these would not take on the vectors of this function.
+        let mut places = vec![scene.frames.mean; wanted.frames.len()];
+        for (i, place) in places.iter_mut().enumerate() {
+            let products = &scene.between().row(i)[..covariance.len()];
+            kernel.row(products, wanted.squares[i], wanted.frames[i], rows, &mut covariance);
+            for (place, weights) in place.iter_mut().zip(weights) {
+                *place += dot(&covariance, weights);
+            }
+        }
+        places
     }
 }

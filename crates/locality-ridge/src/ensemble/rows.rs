@@ -16,48 +16,75 @@ const BESIDE_PSEUDO: usize = 2;
 /// Frames of a pseudo-gap that are taken, at least.
 const INSIDE: usize = 12;
 
-/// Frames to learn from, in ascending order.
+/// Frames to learn from: in ascending order those that no pseudo-gap hides or has beside it, then the others.
+///
+/// In this order the part of the inverse covariance that leaving out a pseudo-gap needs is its last block.
 #[derive(Debug)]
 pub(super) struct Rows {
     frames: Vec<usize>,
+    /// How many stand first.
+    apart: usize,
 }
 
 impl Rows {
     /// Chooses from the frames `training`, which are in ascending order.
     pub fn choose(training: &[usize], gap: &Range<usize>, pseudo_gaps: &[PseudoGap]) -> Self {
         let step = training.len().div_ceil(SPREAD).max(1);
-        let mut frames: Vec<usize> = training.iter().copied().step_by(step).collect();
+        let spread: Vec<usize> = training.iter().copied().step_by(step).collect();
+        let mut frames = spread.clone();
         frames.extend(beside(gap, BESIDE));
         for gap in pseudo_gaps {
             frames.extend(beside(&gap.frames, BESIDE_PSEUDO));
+            let known = spread.iter().filter(|t| gap.frames.contains(t)).count();
             let inside = INSIDE.min(gap.frames.len());
-            let last = gap.frames.len() - 1;
-            frames.extend((0..inside).map(|k| gap.frames.start + k * last / (inside - 1).max(1)));
+            if known < inside {
+                let last = gap.frames.len() - 1;
+                let place = |k: usize| gap.frames.start + k * last / (inside - 1).max(1);
+                frames.extend((0..inside).map(place));
+            }
         }
         frames.sort_unstable();
         frames.dedup();
         frames.retain(|t| training.binary_search(t).is_ok());
-        Self { frames }
+        let near = |t: &usize| {
+            pseudo_gaps.iter().any(|gap| gap.hidden.start <= t + 1 && *t <= gap.hidden.end)
+        };
+        let (near, mut apart): (Vec<usize>, Vec<usize>) = frames.into_iter().partition(near);
+        let count = apart.len();
+        apart.extend(near);
+        Self { frames: apart, apart: count }
     }
 
     pub fn frames(&self) -> &[usize] {
         &self.frames
     }
 
-    pub fn len(&self) -> usize {
-        self.frames.len()
+    /// How many frames stand before those that pseudo-gaps hide or have beside them.
+    pub fn apart(&self) -> usize {
+        self.apart
+    }
+
+    /// The row whose frame is in the middle of all.
+    pub fn middle(&self) -> usize {
+        let mut sorted = self.frames.clone();
+        sorted.sort_unstable();
+        sorted.get(sorted.len() / 2).and_then(|&t| self.index(t)).unwrap_or(0)
     }
 
     pub fn index(&self, frame: usize) -> Option<usize> {
-        self.frames.binary_search(&frame).ok()
+        let (apart, near) = self.frames.split_at(self.apart);
+        let later = || near.binary_search(&frame).ok().map(|k| k + self.apart);
+        apart.binary_search(&frame).ok().or_else(later)
     }
 
-    /// Indices of the rows in a run of frames.
+    /// Rows of a run of frames that a pseudo-gap hides.
     pub fn range(&self, frames: &Range<usize>) -> Range<usize> {
-        self.frames.partition_point(|&t| t < frames.start)
-            ..self.frames.partition_point(|&t| t < frames.end)
+        let near = &self.frames[self.apart..];
+        self.apart + near.partition_point(|&t| t < frames.start)
+            ..self.apart + near.partition_point(|&t| t < frames.end)
     }
 
+    /// The frames of a run that a pseudo-gap hides.
     pub fn frames_in(&self, frames: &Range<usize>) -> Vec<usize> {
         self.frames[self.range(frames)].to_vec()
     }

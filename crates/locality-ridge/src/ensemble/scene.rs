@@ -1,11 +1,13 @@
 //! The frames of a gap in one view: features of the neighbours, and the target, in a local frame.
 
+use std::rc::Rc;
+
 use mocap_core::Take;
-use ndarray::{Array2, Axis};
 
 use super::{
-    kernel::{Pairs, Side},
-    variant::View,
+    kernel::Side,
+    tile::Panel,
+    variant::{Carrier, View},
 };
 use crate::{
     frame::{LocalFrame, Reference, is_linear},
@@ -21,7 +23,7 @@ pub(super) struct Sample<'a> {
     pub target: usize,
     /// Neighbours seen in all frames below, steadiest first, with the spread of their distance in metres.
     pub neighbours: &'a [(usize, f64)],
-    /// Frames that show the target and its neighbours, in ascending order.
+    /// Frames that show the target and its neighbours.
     pub rows: &'a [usize],
     /// The row whose pose local frames refer to.
     pub reference: usize,
@@ -29,101 +31,152 @@ pub(super) struct Sample<'a> {
     pub wanted: &'a [usize],
 }
 
-/// Frames and wanted frames in one view.
-pub(super) struct Scene {
+/// Rows and wanted frames in the local frames of one core.
+pub(super) struct Frames {
     /// Local frames of the rows.
-    pub row_frames: Vec<LocalFrame>,
+    pub rows: Vec<LocalFrame>,
     /// Local frames of the wanted frames.
-    pub wanted_frames: Vec<LocalFrame>,
+    pub wanted: Vec<LocalFrame>,
     /// The target in the rows, less its mean.
     pub target: Vec<[f64; 3]>,
     pub mean: [f64; 3],
-    within: Array2<f64>,
-    between: Array2<f64>,
-    row_squares: Vec<f64>,
-    wanted_squares: Vec<f64>,
 }
 
-impl Scene {
-    pub fn new(sample: &Sample<'_>, view: View) -> Self {
-        let core = core(sample, view.core);
-        let regressors = &sample.neighbours[..view.regressors.min(sample.neighbours.len())];
+impl Frames {
+    pub fn new(sample: &Sample<'_>, carrier: Carrier) -> Self {
+        let core = core(sample, carrier.core);
         let pose =
             |t: usize| core.iter().map(|&(m, _)| point(sample.take, t, m)).collect::<Vec<_>>();
         let weights: Vec<f64> =
-            core.iter().map(|(_, spread)| (spread + 2e-3).powf(-view.steadiness)).collect();
+            core.iter().map(|(_, spread)| (spread + 2e-3).powf(-carrier.steadiness)).collect();
         let reference = Reference::weighted(&pose(sample.rows[sample.reference]), &weights);
         let frames =
             |of: &[usize]| of.iter().map(|&t| reference.frame(&pose(t))).collect::<Vec<_>>();
-        let (row_frames, wanted_frames) = (frames(sample.rows), frames(sample.wanted));
-
-        let local = |of: &[usize], frames: &[LocalFrame]| {
-            let mut x = Array2::zeros((of.len(), 3 * regressors.len()));
-            for ((mut row, &t), frame) in x.rows_mut().into_iter().zip(of).zip(frames) {
-                for (k, &(m, _)) in regressors.iter().enumerate() {
-                    for (a, c) in frame.to_local(point(sample.take, t, m)).into_iter().enumerate() {
-                        row[3 * k + a] = c;
-                    }
-                }
-            }
-            x
-        };
-        let mut x = local(sample.rows, &row_frames);
-        let mut z = local(sample.wanted, &wanted_frames);
-        let n = sample.rows.len() as f64;
-        let origin = x.row(sample.reference).to_owned();
-        x -= &origin;
-        z -= &origin;
-        let mean = x.sum_axis(Axis(0)) / n;
-        let relevance = |k: usize| (regressors[k / 3].1 + 3e-3).powf(-view.relevance);
-        for matrix in [&mut x, &mut z] {
-            *matrix -= &mean;
-            for (k, mut column) in matrix.columns_mut().into_iter().enumerate() {
-                column *= relevance(k);
-            }
-        }
-        let floor: f64 = (0..x.ncols()).map(|k| FLOOR_M2 * relevance(k).powi(2)).sum();
-        let unit = 1.0 / (x.iter().map(|c| c * c).sum::<f64>() / n).max(floor).sqrt();
-        x *= unit;
-        z *= unit;
-
+        let (rows, wanted) = (frames(sample.rows), frames(sample.wanted));
         let places: Vec<[f64; 3]> = sample
             .rows
             .iter()
-            .zip(&row_frames)
+            .zip(&rows)
             .map(|(&t, frame)| frame.to_local(point(sample.take, t, sample.target)))
             .collect();
+        let n = places.len() as f64;
         let first = places[sample.reference];
         let shift: [f64; 3] =
             std::array::from_fn(|a| places.iter().map(|p| p[a] - first[a]).sum::<f64>() / n);
         let target =
             places.iter().map(|p| std::array::from_fn(|a| p[a] - first[a] - shift[a])).collect();
-        let squares =
-            |x: &Array2<f64>| x.rows().into_iter().map(|row| row.dot(&row)).collect::<Vec<f64>>();
+        Self { rows, wanted, target, mean: std::array::from_fn(|a| first[a] + shift[a]) }
+    }
+}
+
+/// Features of the neighbours in local frames.
+pub(super) struct Scene {
+    pub frames: Rc<Frames>,
+    rows: Features,
+    wanted: Features,
+    /// Inner products of the rows' features.
+    within: Panel,
+    /// Those of wanted frames with rows.
+    between: Panel,
+}
+
+/// Frames with the squared lengths of their features.
+struct Features {
+    frames: Vec<usize>,
+    squares: Vec<f64>,
+}
+
+impl Features {
+    fn of(frames: &[usize], x: &Panel) -> Self {
+        let square = |i: usize| x.row(i).iter().map(|c| c * c).sum();
+        Self { frames: frames.to_vec(), squares: (0..frames.len()).map(square).collect() }
+    }
+
+    fn side(&self) -> Side<'_> {
+        Side { frames: &self.frames, squares: &self.squares }
+    }
+}
+
+impl Scene {
+    pub fn new(sample: &Sample<'_>, frames: Rc<Frames>, view: View) -> Self {
+        let regressors = &sample.neighbours[..view.regressors.min(sample.neighbours.len())];
+        let local = |of: &[usize], frames: &[LocalFrame]| {
+            let mut x = Panel::zeros(of.len(), 3 * regressors.len());
+            for (i, (&t, frame)) in of.iter().zip(frames).enumerate() {
+                let cells = x.row_mut(i).chunks_exact_mut(3);
+                for (cells, &(m, _)) in cells.zip(regressors) {
+                    cells.copy_from_slice(&frame.to_local(point(sample.take, t, m)));
+                }
+            }
+            x
+        };
+        let mut x = local(sample.rows, &frames.rows);
+        let mut z = local(sample.wanted, &frames.wanted);
+        let relevance: Vec<f64> = regressors
+            .iter()
+            .flat_map(|(_, spread)| [(spread + 3e-3).powf(-view.relevance); 3])
+            .collect();
+        standardise(&mut x, &mut z, sample.reference, &relevance);
         Self {
-            target,
-            mean: std::array::from_fn(|a| first[a] + shift[a]),
-            within: x.dot(&x.t()),
-            between: z.dot(&x.t()),
-            row_squares: squares(&x),
-            wanted_squares: squares(&z),
-            row_frames,
-            wanted_frames,
+            within: x.products(&x, true),
+            between: z.products(&x, false),
+            rows: Features::of(sample.rows, &x),
+            wanted: Features::of(sample.wanted, &z),
+            frames,
         }
     }
 
-    /// Pairs of rows.
-    pub fn within<'a>(&'a self, rows: &'a [usize]) -> Pairs<'a> {
-        let side = Side { frames: rows, squares: &self.row_squares };
-        Pairs { products: self.within.as_slice().unwrap_or_default(), rows: side, columns: side }
+    pub fn rows(&self) -> Side<'_> {
+        self.rows.side()
     }
 
-    /// Pairs of a wanted frame and a row.
-    pub fn between<'a>(&'a self, wanted: &'a [usize], rows: &'a [usize]) -> Pairs<'a> {
-        Pairs {
-            products: self.between.as_slice().unwrap_or_default(),
-            rows: Side { frames: wanted, squares: &self.wanted_squares },
-            columns: Side { frames: rows, squares: &self.row_squares },
+    pub fn wanted(&self) -> Side<'_> {
+        self.wanted.side()
+    }
+
+    /// Inner products of rows with rows: the lower triangle.
+    pub fn within(&self) -> &Panel {
+        &self.within
+    }
+
+    /// Inner products of wanted frames with rows.
+    pub fn between(&self) -> &Panel {
+        &self.between
+    }
+
+    /// No two frames are so many frames apart.
+    pub fn lags(&self) -> usize {
+        let frames = || self.rows.frames.iter().chain(&self.wanted.frames);
+        let (first, last) = (frames().min(), frames().max());
+        first.zip(last).map_or(0, |(first, last)| last - first + 1)
+    }
+}
+
+/// Centres features on the mean of the rows `x`, weighs columns by their relevance, and makes the mean square
+/// length of the rows one; does the same to `z`.
+fn standardise(x: &mut Panel, z: &mut Panel, reference: usize, relevance: &[f64]) {
+    let n = x.rows() as f64;
+    // Around one of them, so that no digits are lost where they hardly vary.
+    let origin = x.row(reference)[..relevance.len()].to_vec();
+    let mut mean = vec![0.0; relevance.len()];
+    for i in 0..x.rows() {
+        for ((sum, c), o) in mean.iter_mut().zip(x.row(i)).zip(&origin) {
+            *sum += (c - o) / n;
+        }
+    }
+    let centre = |row: &mut [f64]| {
+        for (((c, o), mean), relevance) in row.iter_mut().zip(&origin).zip(&mean).zip(relevance) {
+            *c = (*c - o - mean) * relevance;
+        }
+    };
+    (0..x.rows()).for_each(|i| centre(x.row_mut(i)));
+    (0..z.rows()).for_each(|i| centre(z.row_mut(i)));
+    let square: f64 = (0..x.rows()).flat_map(|i| x.row(i)).map(|c| c * c).sum::<f64>() / n;
+    let floor: f64 = relevance.iter().map(|r| FLOOR_M2 * r * r).sum();
+    let unit = 1.0 / square.max(floor).sqrt();
+    for panel in [x, z] {
+        for i in 0..panel.rows() {
+            panel.row_mut(i).iter_mut().for_each(|c| *c *= unit);
         }
     }
 }

@@ -20,18 +20,24 @@ pub(super) struct Variant {
 /// Neighbours in a local frame of theirs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct View {
-    /// Neighbours that carry the frame.
-    pub core: usize,
-    /// A core marker counts in the frame by (spread + 2 mm) to the power of minus this.
-    pub steadiness: f64,
+    pub carrier: Carrier,
     /// Neighbours to learn from.
     pub regressors: usize,
     /// A regressor's coordinates count by (spread + 3 mm) to the power of minus this.
     pub relevance: f64,
 }
 
+/// What carries a local frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Carrier {
+    /// How many neighbours.
+    pub core: usize,
+    /// Each counts by (spread + 2 mm) to the power of minus this.
+    pub steadiness: f64,
+}
+
 const fn view(core: usize, steadiness: f64, regressors: usize, relevance: f64) -> View {
-    View { core, steadiness, regressors, relevance }
+    View { carrier: Carrier { core, steadiness }, regressors, relevance }
 }
 
 const fn curved(variance: f64, length: f64) -> Curved {
@@ -49,7 +55,8 @@ const fn smooth(variance: f64, tau_s: f64) -> Drift {
 const PLAIN: Kernel =
     Kernel { linear: 1e4, curved: curved(300.0, 1.0), drift: rough(10.0, 0.83), noise: 10.0 };
 
-/// Variants that share a view stand together, so that its frames are found once.
+/// Variants that share a carrier, and those of them that share a view, stand together, so that frames and features
+/// are found once.
 ///
 /// They were chosen on takes of `examples/development.rs` in `gapfill`: from a hundred drawn at random, those
 /// whose mixture errs least, left out one by one.
