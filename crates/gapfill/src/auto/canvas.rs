@@ -2,11 +2,11 @@
 
 use std::{collections::BTreeMap, ops::Range};
 
-use locality_ridge::{ensemble::PseudoGap, join};
+use locality_ridge::join;
 use mocap_core::{Choice, CoreError, Estimates, Gap, Take};
 use ndarray::Array2;
 
-use super::mixture::Mixture;
+use super::mixture::{Mixture, Stock};
 
 /// A step between two pieces is spread over this long on either side.
 const BLEND_S: f64 = 0.1;
@@ -17,6 +17,8 @@ pub(super) struct Piece {
     pub marker: usize,
     pub frames: Range<usize>,
     pub fill: Option<Mixture>,
+    /// What the fill was mixed from, if it is poor.
+    pub stock: Option<Stock>,
 }
 
 /// The pieces of all gaps, and the finished fill.
@@ -65,8 +67,9 @@ impl<'a> Canvas<'a> {
         )
     }
 
-    /// Another fill of some frames: pieces inside that have one already are mixed with it.
-    pub fn offer(&mut self, gap: &Gap, other: &Mixture) {
+    /// Another fill of some frames: pieces inside that have one already are mixed with it, or replaced where it was
+    /// mixed from theirs.
+    pub fn offer(&mut self, gap: &Gap, other: &Mixture, replace: bool) {
         let inside = (gap.marker, gap.frames.start)..(gap.marker, gap.frames.end);
         for (_, piece) in self.pieces.range_mut(inside) {
             let part = piece.frames.start - gap.frames.start..piece.frames.end - gap.frames.start;
@@ -75,15 +78,15 @@ impl<'a> Canvas<'a> {
                 sigma_m: other.sigma_m[part].to_vec(),
                 ..other.clone()
             };
-            piece.fill = Some(piece.fill.as_ref().map_or(other.clone(), |own| own.with(&other)));
+            let own = piece.fill.as_ref().filter(|_| !replace);
+            piece.fill = Some(own.map_or(other.clone(), |own| own.with(&other)));
         }
     }
 
-    /// The pseudo-gaps that a fill of exactly these frames was tried on.
-    pub fn tried(&self, gap: &Gap) -> Vec<PseudoGap> {
+    /// What a fill of exactly these frames was mixed from.
+    pub fn stock(&self, gap: &Gap) -> Option<&Stock> {
         let piece = self.pieces.get(&(gap.marker, gap.frames.start));
-        let fill = piece.filter(|piece| piece.frames == gap.frames).and_then(|p| p.fill.as_ref());
-        fill.map_or_else(Vec::new, |fill| fill.tried.iter().map(|(gap, _)| gap.clone()).collect())
+        piece.filter(|piece| piece.frames == gap.frames)?.stock.as_ref()
     }
 
     /// Mean square error that is expected in a gap, in m².

@@ -18,10 +18,17 @@ pub(super) struct Mixture {
     pub sigma_m: Vec<f64>,
     /// Mean square error in pseudo-gaps in m²; `None` without any.
     pub square_m2: Option<f64>,
-    /// Pseudo-gaps that it was tried on, with the mean square error in each in m².
-    pub tried: Vec<(PseudoGap, f64)>,
     /// Names and weights, of sum 1.
     pub shares: Vec<(&'static str, f64)>,
+}
+
+/// Candidates that were mixed, to be mixed again with others.
+#[derive(Debug, Clone)]
+pub(super) struct Stock {
+    pub candidates: Vec<Candidate>,
+    pub pseudo_gaps: Vec<PseudoGap>,
+    /// Frames of each that errors are known in.
+    pub scored: Vec<Vec<usize>>,
 }
 
 /// Where candidates were tried.
@@ -41,7 +48,18 @@ impl Mixture {
         sides: Sides,
         rate_hz: f64,
     ) -> Self {
-        let weights = stack::weights(candidates);
+        Self::weighted(candidates, stack::weights(candidates), tried, frames, sides, rate_hz)
+    }
+
+    /// Mixes with these weights.
+    pub fn weighted(
+        candidates: &[Candidate],
+        weights: Vec<f64>,
+        tried: Tried<'_>,
+        frames: &Range<usize>,
+        sides: Sides,
+        rate_hz: f64,
+    ) -> Self {
         let mixed = |of: &dyn Fn(&Candidate) -> [f64; 3]| {
             let parts = candidates.iter().zip(&weights);
             parts.fold([0.0; 3], |sum, (candidate, &w)| add(sum, scale(w, of(candidate))))
@@ -63,16 +81,18 @@ impl Mixture {
             positions: (0..frames.len()).map(|k| mixed(&|c| c.positions[k])).collect(),
             sigma_m: frames.clone().map(sigma).collect(),
             square_m2: mean_square(&errors),
-            tried: by_gap(&tried),
             shares: shares(candidates, &weights),
         }
     }
 
-    /// Two fills of the same frames, weighed by their errors in the pseudo-gaps that both were tried on, as if
-    /// these errors had nothing in common.
+    /// Whether it is expected to err by more than `limit_m`, root mean square, or nobody knows.
+    pub fn is_poor(&self, limit_m: f64) -> bool {
+        self.square_m2.is_none_or(|square| square > limit_m * limit_m)
+    }
+
+    /// Two fills of the same frames, weighed by their errors in pseudo-gaps as if these errors had nothing in common.
     pub fn with(&self, other: &Self) -> Self {
-        let (own, theirs) = self.in_common(other).unzip();
-        let weight = match (own.or(self.square_m2), theirs.or(other.square_m2)) {
+        let weight = match (self.square_m2, other.square_m2) {
             (Some(a), Some(b)) if a + b > 0.0 => {
                 let (a, b) = (a.powf(-stack::SHARPNESS), b.powf(-stack::SHARPNESS));
                 if a.is_infinite() { 1.0 } else { a / (a + b) }
@@ -94,7 +114,6 @@ impl Mixture {
             square_m2: self.square_m2.map_or(other.square_m2, |a| {
                 Some(weight * a + other.square_m2.map_or(0.0, |b| rest * b))
             }),
-            tried: Vec::new(),
             shares: self
                 .shares
                 .iter()
@@ -103,33 +122,6 @@ impl Mixture {
                 .collect(),
         }
     }
-}
-
-impl Mixture {
-    /// Mean square errors of both in the pseudo-gaps that both were tried on.
-    fn in_common(&self, other: &Self) -> Option<(f64, f64)> {
-        let pairs: Vec<(f64, f64)> = self
-            .tried
-            .iter()
-            .filter_map(|(gap, own)| {
-                let same = |(theirs, _): &&(PseudoGap, f64)| theirs.frames == gap.frames;
-                Some((*own, other.tried.iter().find(same)?.1))
-            })
-            .collect();
-        let n = pairs.len() as f64;
-        let sum = pairs.iter().fold((0.0, 0.0), |sum, pair| (sum.0 + pair.0, sum.1 + pair.1));
-        (!pairs.is_empty()).then_some((sum.0 / n, sum.1 / n))
-    }
-}
-
-fn by_gap(tried: &[Errors<'_>]) -> Vec<(PseudoGap, f64)> {
-    let known = tried.iter().filter(|tried| !tried.values.is_empty());
-    known
-        .map(|tried| {
-            let sum: f64 = tried.values.iter().map(|&e| dot(e, e)).sum();
-            (tried.gap.clone(), sum / tried.values.len() as f64)
-        })
-        .collect()
 }
 
 fn mean_square(errors: &[Vec<[f64; 3]>]) -> Option<f64> {

@@ -8,7 +8,7 @@ mod stack;
 
 use std::ops::ControlFlow;
 
-use baselines::{CubicSpline, Pca, Pchip};
+use baselines::{CubicSpline, Pca, Pchip, QuinticSpline};
 use bolero_sc::{BoleroSc, BoleroScParams};
 use lds_kalman::filler::{LdsFiller, LdsFillerParams};
 use locality_ridge::ensemble::Ensemble;
@@ -19,7 +19,7 @@ use mocap_core::{
 
 use self::{
     canvas::{Canvas, Piece},
-    mixture::{Mixture, Tried},
+    mixture::{Mixture, Stock, Tried},
     rivals::{Rival, compete},
 };
 use crate::{Edges, Joined};
@@ -97,6 +97,7 @@ impl Auto {
         let rivals = vec![
             Rival { name: "spline", filler: spline, costly: false },
             Rival { name: "pchip", filler: Box::new(Pchip { edges: params.edges }), costly: false },
+            Rival { name: "vicon-spline", filler: Box::new(QuinticSpline), costly: false },
             Rival { name: "pca", filler: Box::new(Pca::default()), costly: false },
             Rival { name: "lds", filler: lds, costly: true },
             Rival { name: "bolero-sc", filler: bolero, costly: true },
@@ -159,7 +160,13 @@ fn local(ensemble: &mut Ensemble<'_>, gap: &Gap, rate_hz: f64) -> Vec<Piece> {
         let tried = Tried { pseudo_gaps: &part.pseudo_gaps, scored: &part.scored };
         let fill = (!part.candidates.is_empty())
             .then(|| Mixture::of(&part.candidates, tried, &part.frames, part.sides, rate_hz));
-        Piece { marker: gap.marker, frames: part.frames, fill }
+        let poor = fill.as_ref().is_some_and(|fill| fill.is_poor(POOR_M));
+        let stock = poor.then_some(Stock {
+            candidates: part.candidates,
+            pseudo_gaps: part.pseudo_gaps,
+            scored: part.scored,
+        });
+        Piece { marker: gap.marker, frames: part.frames, fill, stock }
     };
     ensemble.parts(gap).into_iter().map(piece).collect()
 }
@@ -167,9 +174,7 @@ fn local(ensemble: &mut Ensemble<'_>, gap: &Gap, rate_hz: f64) -> Vec<Piece> {
 impl Auto {
     /// Asks other methods where neighbours say nothing, or little.
     fn compete(&self, take: &Take, canvas: &mut Canvas<'_>) -> Result<(), FillError> {
-        let poor = |piece: &Piece| {
-            piece.fill.as_ref().is_none_or(|f| f.square_m2.is_none_or(|e| e > POOR_M * POOR_M))
-        };
+        let poor = |piece: &Piece| piece.fill.as_ref().is_none_or(|fill| fill.is_poor(POOR_M));
         let base = canvas.filled_but(&poor)?;
         let open: Vec<Gap> = base
             .gaps()
@@ -181,14 +186,10 @@ impl Auto {
         }
         let costly = canvas.pieces().any(|piece| {
             let long = piece.frames.len() as f64 > CURVE_S * take.rate_hz();
-            let lost = |f: &Mixture| f.square_m2.is_none_or(|e| e > HOPELESS_M * HOPELESS_M);
-            long && piece.fill.as_ref().is_none_or(lost)
+            long && piece.fill.as_ref().is_none_or(|fill| fill.is_poor(HOPELESS_M))
         });
-        let answers = compete(&base, &open, &|gap| canvas.tried(gap), &self.rivals, costly);
-        for (gap, answer) in open.iter().zip(answers) {
-            if let Some(answer) = answer {
-                canvas.offer(gap, &answer);
-            }
+        for answer in compete(&base, &open, &|gap| canvas.stock(gap), &self.rivals, costly) {
+            canvas.offer(&answer.gap, &answer.mixture, answer.of_stock);
         }
         Ok(())
     }

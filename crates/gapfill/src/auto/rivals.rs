@@ -3,12 +3,27 @@
 use std::collections::BTreeMap;
 
 use locality_ridge::ensemble::{self, Candidate, PseudoGap, Sides};
-use mocap_core::{CellState, Filled, Gap, GapContext, GapFiller, Mask, Take, geometry::sub};
+use mocap_core::{CellState, Filled, Gap, GapFiller, Mask, Take, geometry::sub};
 
-use super::mixture::{Mixture, Tried};
+use super::{
+    mixture::{Mixture, Stock, Tried},
+    stack,
+};
 
-/// Pseudo-gaps of each run of frames; more would hide too much of the take at once.
-const MOST: usize = 4;
+/// Pseudo-gaps of each run of frames, at most.
+const MOST: usize = 16;
+
+/// In one pass they hide one in so many frames of the take, but for the first four of them.
+const HIDDEN: usize = 6;
+
+/// Each method fills the take so many times, each time with other pseudo-gaps.
+const PASSES: usize = 2;
+
+/// Frames between two pseudo-gaps beyond half their length: what a spline with seeds asks for.
+const SEEDS: usize = 5;
+
+/// The candidates of another fill are of one kind; before errors are known they count as much as so many rivals.
+const KIN: f64 = 3.0;
 
 /// A method that fills whole takes.
 pub(super) struct Rival {
@@ -18,127 +33,214 @@ pub(super) struct Rival {
     pub costly: bool,
 }
 
-/// Frames of one or more markers that rivals are asked for.
-struct Open {
-    pseudo_gaps: Vec<PseudoGap>,
-    scored: Vec<Vec<usize>>,
+/// What the rivals make of a gap.
+pub(super) struct Answer {
+    pub gap: Gap,
+    pub mixture: Mixture,
+    /// Whether the candidates of another fill are in it.
+    pub of_stock: bool,
 }
 
-/// What the rivals make of each gap, in the order of `gaps`; `None` where none of them has an answer.
-/// `tried` gives the pseudo-gaps of another fill of the gap, to be compared with.
+/// Markers that are missing in the same frames.
+struct Group {
+    gaps: Vec<Gap>,
+    /// Pseudo-gaps with the pass in which they are hidden.
+    pseudo_gaps: Vec<(usize, PseudoGap)>,
+    /// Frames of each that errors are known in.
+    scored: Vec<Vec<usize>>,
+    /// Candidates of another fill of each gap, with errors in these pseudo-gaps.
+    stocks: Option<Vec<Vec<Candidate>>>,
+}
+
+/// What the rivals make of each gap that they have an answer for. `stock` gives the candidates of another fill.
 ///
-/// Each rival fills the take once, with all pseudo-gaps hidden together, so that their number costs
+/// Each rival fills the take in passes, each with many pseudo-gaps hidden together, so that their number costs
 /// nothing. `costly` asks those that take long, too.
-pub(super) fn compete(
+pub(super) fn compete<'a>(
     take: &Take,
     gaps: &[Gap],
-    tried: &dyn Fn(&Gap) -> Vec<PseudoGap>,
+    stock: &dyn Fn(&Gap) -> Option<&'a Stock>,
     rivals: &[Rival],
     costly: bool,
-) -> Vec<Option<Mixture>> {
-    let open = group(take, gaps, tried);
-    let mut hidden = Mask::none(take.frames(), take.marker_count());
-    for (frames, open) in &open {
-        for marker in missing_in(take, frames) {
-            for t in open.pseudo_gaps.iter().flat_map(|gap| gap.hidden.clone()) {
-                let _ = hidden.insert(t.min(take.frames() - 1), marker);
-            }
-        }
-    }
-    let Ok(visible) = take.hide(&hidden) else { return vec![None; gaps.len()] };
-    let fills: Vec<(&'static str, Filled)> = rivals
-        .iter()
-        .filter(|rival| costly || !rival.costly)
-        .filter_map(|rival| Some((rival.name, rival.filler.fill(&visible).ok()?)))
-        .collect();
-    let of_gap = |gap: &Gap| {
-        let open = open.get(&(gap.frames.start, gap.frames.end))?;
-        let candidates: Vec<Candidate> = fills
-            .iter()
-            .filter_map(|(name, filled)| candidate(take, name, filled, gap, open))
-            .collect();
-        let sides = sides(take, gap);
-        let tried = Tried { pseudo_gaps: &open.pseudo_gaps, scored: &open.scored };
-        (!candidates.is_empty())
-            .then(|| Mixture::of(&candidates, tried, &gap.frames, sides, take.rate_hz()))
-    };
-    gaps.iter().map(of_gap).collect()
-}
-
-type Groups = BTreeMap<(usize, usize), Open>;
-
-/// Gaps by their frames, each group with pseudo-gaps in which all its markers, and those that they
-/// have to do without, are seen.
-///
-/// Those that another fill of the gap was tried on come first.
-fn group(take: &Take, gaps: &[Gap], tried: &dyn Fn(&Gap) -> Vec<PseudoGap>) -> Groups {
-    let mut groups = Groups::new();
+) -> Vec<Answer> {
+    let mut alike: BTreeMap<(usize, usize), Vec<Gap>> = BTreeMap::new();
     for gap in gaps {
-        let key = (gap.frames.start, gap.frames.end);
-        groups.entry(key).or_insert_with(|| {
-            let missing = missing_in(take, &key);
-            let all_seen = |t: &usize| missing.iter().all(|&m| take.is_observed(*t, m));
-            let seen: Vec<usize> = (0..take.frames()).filter(all_seen).collect();
-            let mut same = tried(gap);
-            same.retain(|gap| gap.hidden.clone().all(|t| seen.binary_search(&t).is_ok()));
-            let mut pseudo_gaps = apart(same);
-            if pseudo_gaps.len() < 2 {
-                pseudo_gaps = apart(ensemble::pseudo_gaps(&seen, gap.len(), sides(take, gap), 0));
-            }
-            let scored = pseudo_gaps.iter().map(|gap| gap.frames.clone().collect()).collect();
-            Open { pseudo_gaps, scored }
-        });
+        alike.entry((gap.frames.start, gap.frames.end)).or_default().push(gap.clone());
+    }
+    let groups: Vec<Group> =
+        alike.into_values().map(|gaps| Group::new(take, gaps, stock)).collect();
+    let asked: Vec<&Rival> = rivals.iter().filter(|rival| costly || !rival.costly).collect();
+    let mut fills: Vec<Vec<Option<Filled>>> = vec![Vec::new(); asked.len()];
+    for pass in 0..PASSES {
+        let hidden = hidden(take, &groups, pass);
+        let visible = take.hide(&hidden).ok().filter(|_| pass == 0 || hidden.count() > 0);
+        for (fills, rival) in fills.iter_mut().zip(&asked) {
+            fills.push(visible.as_ref().and_then(|visible| rival.filler.fill(visible).ok()));
+        }
     }
     groups
+        .iter()
+        .flat_map(|group| {
+            let candidates = |gap: &Gap| {
+                let of = |(rival, fills): (&&Rival, &Vec<Option<Filled>>)| {
+                    group.candidate(take, rival.name, fills, gap)
+                };
+                asked.iter().zip(&fills).filter_map(of).collect::<Vec<Candidate>>()
+            };
+            let rivals: Vec<Vec<Candidate>> = group.gaps.iter().map(candidates).collect();
+            group.mix(take, rivals)
+        })
+        .collect()
 }
 
-fn missing_in(take: &Take, &(start, end): &(usize, usize)) -> Vec<usize> {
-    let missing = |m: &usize| (start..end).any(|t| !take.is_observed(t, *m));
-    (0..take.marker_count()).filter(missing).collect()
-}
-
-fn sides(take: &Take, gap: &Gap) -> Sides {
-    match gap.context(take.frames()) {
-        GapContext::Interior => Sides { left: true, right: true },
-        GapContext::Leading => Sides { left: false, right: true },
-        GapContext::Trailing => Sides { left: true, right: false },
-        GapContext::Whole => Sides { left: false, right: false },
-    }
-}
-
-/// Pseudo-gaps that leave their own length of frames between them, spread over the take.
-fn apart(all: Vec<PseudoGap>) -> Vec<PseudoGap> {
-    let mut kept: Vec<PseudoGap> = Vec::new();
-    for gap in all {
-        let free =
-            |last: &PseudoGap| gap.hidden.start >= last.hidden.end + last.frames.len().max(5);
-        if kept.last().is_none_or(free) {
-            kept.push(gap);
+/// Everything that pseudo-gaps hide in a pass.
+fn hidden(take: &Take, groups: &[Group], pass: usize) -> Mask {
+    let mut hidden = Mask::none(take.frames(), take.marker_count());
+    for group in groups {
+        let missing = group.missing(take);
+        for (_, gap) in group.pseudo_gaps.iter().filter(|(at, _)| *at == pass) {
+            for t in gap.hidden.start..gap.hidden.end.min(take.frames()) {
+                for &m in &missing {
+                    let _ = hidden.insert(t, m);
+                }
+            }
         }
     }
-    let step = kept.len().div_ceil(MOST).max(1);
-    kept.into_iter().step_by(step).collect()
+    hidden
 }
 
-fn candidate(
-    take: &Take,
-    name: &'static str,
-    filled: &Filled,
-    gap: &Gap,
-    open: &Open,
-) -> Option<Candidate> {
-    let found = |t: usize| {
-        filled
-            .take()
-            .position(t, gap.marker)
-            .filter(|_| filled.state(t, gap.marker) == CellState::Filled)
-    };
-    let positions = gap.frames.clone().map(found).collect::<Option<Vec<_>>>()?;
-    let error = |&t: &usize| Some(sub(take.position(t, gap.marker)?, found(t)?));
-    let errors = open
-        .scored
-        .iter()
-        .map(|frames| frames.iter().map(error).collect::<Option<Vec<_>>>())
-        .collect::<Option<Vec<_>>>()?;
-    Some(Candidate { name, positions, errors })
+impl Group {
+    /// At least one gap, with pseudo-gaps in which all markers that are missing in them are seen: those that other
+    /// fills were tried on, where all were tried on the same.
+    fn new<'a>(take: &Take, gaps: Vec<Gap>, stock: &dyn Fn(&Gap) -> Option<&'a Stock>) -> Self {
+        let mut group = Self { gaps, pseudo_gaps: Vec::new(), scored: Vec::new(), stocks: None };
+        let missing = group.missing(take);
+        let all_seen = |t: usize| missing.iter().all(|&m| take.is_observed(t, m));
+        let length = group.gaps[0].len();
+        let most = (take.frames() / (HIDDEN * length)).clamp(4, MOST);
+        let stocks: Option<Vec<&Stock>> = group.gaps.iter().map(stock).collect();
+        if let Some(stocks) = stocks.filter(|stocks| tried_alike(stocks)) {
+            let whole = |gap: &PseudoGap| gap.hidden.clone().all(all_seen);
+            let passes = passes(&stocks[0].pseudo_gaps, most, &whole);
+            let kept = |of: &[Vec<[f64; 3]>]| passes.iter().map(|(k, _)| of[*k].clone()).collect();
+            if passes.len() > 1 {
+                let restrict = |c: &Candidate| Candidate { errors: kept(&c.errors), ..c.clone() };
+                let of = |stock: &&Stock| stock.candidates.iter().map(restrict).collect();
+                group.stocks = Some(stocks.iter().map(of).collect());
+                group.scored = passes.iter().map(|(k, _)| stocks[0].scored[*k].clone()).collect();
+                group.pseudo_gaps =
+                    passes.iter().map(|&(k, p)| (p, stocks[0].pseudo_gaps[k].clone())).collect();
+                return group;
+            }
+        }
+        let seen: Vec<usize> = (0..take.frames()).filter(|&t| all_seen(t)).collect();
+        let cut = ensemble::pseudo_gaps(&seen, length, group.sides(take), 0, PASSES * most);
+        let passes = passes(&cut, most, &|_| true);
+        group.scored = passes.iter().map(|&(k, _)| cut[k].frames.clone().collect()).collect();
+        group.pseudo_gaps = passes.iter().map(|&(k, p)| (p, cut[k].clone())).collect();
+        group
+    }
+
+    fn sides(&self, take: &Take) -> Sides {
+        let frames = &self.gaps[0].frames;
+        Sides { left: frames.start > 0, right: frames.end < take.frames() }
+    }
+
+    /// Markers that are missing in any of the frames.
+    fn missing(&self, take: &Take) -> Vec<usize> {
+        let frames = &self.gaps[0].frames;
+        let missing = |m: &usize| frames.clone().any(|t| !take.is_observed(t, *m));
+        (0..take.marker_count()).filter(missing).collect()
+    }
+
+    /// What a rival made of a gap and its pseudo-gaps, by pass; `None` where it left some of them open.
+    fn candidate(
+        &self,
+        take: &Take,
+        name: &'static str,
+        fills: &[Option<Filled>],
+        gap: &Gap,
+    ) -> Option<Candidate> {
+        let found = |pass: usize, t: usize| {
+            let filled = fills[pass].as_ref()?;
+            let position = filled.take().position(t, gap.marker);
+            position.filter(|_| filled.state(t, gap.marker) == CellState::Filled)
+        };
+        let error =
+            |pass: usize, t: usize| Some(sub(take.position(t, gap.marker)?, found(pass, t)?));
+        let errors = |((pass, _), frames): (&(usize, PseudoGap), &Vec<usize>)| {
+            frames.iter().map(|&t| error(*pass, t)).collect::<Option<Vec<_>>>()
+        };
+        Some(Candidate {
+            name,
+            positions: gap.frames.clone().map(|t| found(0, t)).collect::<Option<_>>()?,
+            errors: self.pseudo_gaps.iter().zip(&self.scored).map(errors).collect::<Option<_>>()?,
+        })
+    }
+
+    /// Mixtures of the rivals, and of the candidates of other fills.
+    fn mix(&self, take: &Take, rivals: Vec<Vec<Candidate>>) -> Vec<Answer> {
+        let mut candidates = rivals;
+        let mut credit = vec![1.0; candidates.first().map_or(0, Vec::len)];
+        if let Some(stocks) = &self.stocks {
+            for (candidates, stock) in candidates.iter_mut().zip(stocks) {
+                candidates.extend(stock.iter().cloned());
+            }
+            let more = stocks.first().map_or(0, Vec::len);
+            credit.extend(vec![KIN / more as f64; more]);
+        }
+        let names = |of: &Vec<Candidate>| of.iter().map(|c| c.name).collect::<Vec<_>>();
+        let alike = candidates.windows(2).all(|two| names(&two[0]) == names(&two[1]));
+        let weights = if alike {
+            stack::weights_together(&candidates, &credit)
+        } else {
+            candidates.iter().map(|of| stack::weights(of)).collect()
+        };
+        let pseudo_gaps: Vec<PseudoGap> =
+            self.pseudo_gaps.iter().map(|(_, gap)| gap.clone()).collect();
+        let tried = Tried { pseudo_gaps: &pseudo_gaps, scored: &self.scored };
+        let (sides, rate_hz) = (self.sides(take), take.rate_hz());
+        let answer = |((gap, of), weights): ((&Gap, &Vec<Candidate>), Vec<f64>)| {
+            (!of.is_empty()).then(|| Answer {
+                gap: gap.clone(),
+                mixture: Mixture::weighted(of, weights, tried, &gap.frames, sides, rate_hz),
+                of_stock: self.stocks.is_some(),
+            })
+        };
+        self.gaps.iter().zip(&candidates).zip(weights).filter_map(answer).collect()
+    }
+}
+
+/// Whether all were tried on the same frames.
+fn tried_alike(stocks: &[&Stock]) -> bool {
+    let same = |a: &Stock, b: &Stock| a.pseudo_gaps == b.pseudo_gaps && a.scored == b.scored;
+    stocks.windows(2).all(|two| same(two[0], two[1]))
+}
+
+/// Pseudo-gaps by number with the pass in which they are hidden: in each, at most so many of those that are `whole`,
+/// spread over the take, with half their length between them.
+fn passes(
+    all: &[PseudoGap],
+    most: usize,
+    whole: &dyn Fn(&PseudoGap) -> bool,
+) -> Vec<(usize, usize)> {
+    let mut left: Vec<usize> = (0..all.len()).filter(|&k| whole(&all[k])).collect();
+    let mut passes = Vec::new();
+    for pass in 0..PASSES {
+        let mut kept: Vec<usize> = Vec::new();
+        for &k in &left {
+            let free = |&last: &usize| {
+                let between = all[last].frames.len() / 2 + SEEDS;
+                all[k].hidden.start >= all[last].hidden.end + between
+            };
+            if kept.last().is_none_or(free) {
+                kept.push(k);
+            }
+        }
+        let step = kept.len().div_ceil(most).max(1);
+        let kept: Vec<usize> = kept.into_iter().step_by(step).collect();
+        left.retain(|k| !kept.contains(k));
+        passes.extend(kept.into_iter().map(|k| (k, pass)));
+    }
+    passes
 }

@@ -11,16 +11,44 @@ const HOLD: f64 = 0.3;
 /// Steps of the adjustment.
 const STEPS: usize = 60;
 
+/// How much the errors of markers that are missing together count beside a marker's own.
+const TOGETHER: f64 = 5.0;
+
 /// Weights of sum 1, none of them negative: those that make the mean square error of the mixture in the
 /// pseudo-gaps least, held by their relative entropy to weights from each candidate's own error.
 ///
 /// The errors of candidates are alike, so that the mixture gains most from those that differ; a few
 /// pseudo-gaps do not tell much about thirty candidates, so that the weights must be held.
 pub(super) fn weights(candidates: &[Candidate]) -> Vec<f64> {
-    let products = products(candidates);
-    let n = candidates.len();
+    of_products(&products(candidates), &vec![1.0; candidates.len()])
+}
+
+/// Weights for each of some markers that are missing together and have the same candidates: what one of them tells
+/// of the candidates counts for the others too, each marker's errors in units of its best candidate's.
+pub(super) fn weights_together(markers: &[Vec<Candidate>], credit: &[f64]) -> Vec<Vec<f64>> {
+    let n = markers.first().map_or(0, Vec::len);
+    let scaled: Vec<Vec<f64>> = markers
+        .iter()
+        .map(|candidates| {
+            let products = products(candidates);
+            let least = (0..n).map(|k| products[k * n + k]).fold(f64::INFINITY, f64::min);
+            products.iter().map(|p| p / (least + 1e-18)).collect()
+        })
+        .collect();
+    let share = TOGETHER / markers.len() as f64;
+    let shared: Vec<f64> =
+        (0..n * n).map(|k| share * scaled.iter().map(|s| s[k]).sum::<f64>()).collect();
+    let own = |own: &Vec<f64>| {
+        let sum: Vec<f64> = own.iter().zip(&shared).map(|(a, b)| a + b).collect();
+        of_products(&sum, credit)
+    };
+    scaled.iter().map(own).collect()
+}
+
+fn of_products(products: &[f64], credit: &[f64]) -> Vec<f64> {
+    let n = credit.len();
     let own: Vec<f64> = (0..n).map(|k| products[k * n + k]).collect();
-    let prior = prior(&own);
+    let prior = prior(&own, credit);
     let scale: f64 = prior.iter().zip(&own).map(|(w, e)| w * e).sum();
     if !(scale > 0.0 && scale.is_finite()) {
         return prior;
@@ -68,11 +96,12 @@ fn mean_product(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
     sum / a.len().max(1) as f64
 }
 
-fn prior(own: &[f64]) -> Vec<f64> {
+fn prior(own: &[f64], credit: &[f64]) -> Vec<f64> {
     let least = own.iter().copied().fold(f64::INFINITY, f64::min);
     // Errors at the level of rounding are all the same.
-    let weigh = |e: &f64| ((least + 1e-18) / (e + 1e-18)).powf(SHARPNESS);
-    let raw: Vec<f64> = own.iter().map(weigh).collect();
+    let weigh =
+        |(e, credit): (&f64, &f64)| credit * ((least + 1e-18) / (e + 1e-18)).powf(SHARPNESS);
+    let raw: Vec<f64> = own.iter().zip(credit).map(weigh).collect();
     let sum: f64 = raw.iter().sum();
     raw.iter().map(|w| w / sum).collect()
 }

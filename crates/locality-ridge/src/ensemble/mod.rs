@@ -16,6 +16,7 @@ use mocap_core::{
     geometry::{add, scale, sub},
 };
 
+use self::pseudo_gap::COUNT;
 pub use self::pseudo_gap::{PseudoGap, Sides, pseudo_gaps};
 use self::{
     process::{LeftOut, Process},
@@ -143,7 +144,7 @@ impl<'a> Ensemble<'a> {
             return part;
         }
         let margin = frames_of(MARGIN_S, self.take.rate_hz());
-        part.pseudo_gaps = pseudo_gaps(&chosen.training, frames.len(), sides, margin);
+        part.pseudo_gaps = pseudo_gaps(&chosen.training, frames.len(), sides, margin, COUNT);
         let rows = Rows::choose(&chosen.training, &frames, &part.pseudo_gaps);
         part.scored = part.pseudo_gaps.iter().map(|gap| rows.frames_in(&gap.frames)).collect();
         let spread = |m: &usize| ranking.iter().find(|(r, _)| r == m).copied();
