@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use locality_ridge::ensemble::{Candidate, PseudoGap, Sides};
-use mocap_core::geometry::{add, dot, scale};
+use mocap_core::geometry::{add, dot, scale, sub};
 
 use super::{
     sigma::{Errors, Spread},
@@ -75,7 +75,8 @@ impl Mixture {
             .zip(&errors)
             .map(|((gap, frames), errors)| Errors { gap, frames, values: errors })
             .collect();
-        let spread = Spread::of(&tried, rate_hz);
+        let dissent = dissent(candidates, &weights, frames.len(), &tried);
+        let spread = Spread::of(&tried, rate_hz).map(|spread| spread.in_dissent(dissent));
         let sigma = |t: usize| spread.map_or(f64::NAN, |s| s.sigma_m(t, frames, sides));
         Self {
             positions: (0..frames.len()).map(|k| mixed(&|c| c.positions[k])).collect(),
@@ -130,6 +131,21 @@ fn mean_square(errors: &[Vec<[f64; 3]>]) -> Option<f64> {
     };
     let known: Vec<f64> = errors.iter().filter(|e| !e.is_empty()).map(of_gap).collect();
     (!known.is_empty()).then(|| known.iter().sum::<f64>() / known.len() as f64)
+}
+
+/// Mean square distance of the candidates from their mixture in the gap, as a multiple of that in pseudo-gaps: the more
+/// they differ, the less its poses are like those seen.
+fn dissent(candidates: &[Candidate], weights: &[f64], frames: usize, tried: &[Errors<'_>]) -> f64 {
+    let at = |of: &dyn Fn(&Candidate) -> [f64; 3]| {
+        let parts = || candidates.iter().map(of).zip(weights);
+        let mean = parts().fold([0.0; 3], |sum, (p, &w)| add(sum, scale(w, p)));
+        parts().map(|(p, w)| w * dot(sub(p, mean), sub(p, mean))).sum::<f64>()
+    };
+    let mean = |n: usize, of: &dyn Fn(usize) -> f64| (0..n).map(of).sum::<f64>() / n.max(1) as f64;
+    let here = mean(frames, &|k| at(&|c| c.positions[k]));
+    let there = mean(tried.len(), &|g| mean(tried[g].values.len(), &|k| at(&|c| c.errors[g][k])));
+    // Differences at the level of rounding are all the same.
+    (here + 1e-18) / (there + 1e-18)
 }
 
 /// Weights by name, in the order in which names come.

@@ -11,10 +11,7 @@ const TIMES_S: [f64; 6] = [0.03, 0.1, 0.3, 1.0, 3.0, 10.0];
 const PAR_S: f64 = 0.5;
 
 /// It grows with the length of the gap to this power: the rarer a pose, the longer the gaps that hold one.
-const GROWTH: f64 = 0.15;
-
-/// Bounds of the factor.
-const FACTOR: std::ops::RangeInclusive<f64> = 0.75..=1.15;
+const GROWTH: f64 = 0.05;
 
 /// Errors that spread from the borders as those of a stationary process that is known there.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,12 +58,18 @@ impl Spread {
             .map(|(_, spread)| spread)
     }
 
+    /// The spread where candidates differ by so many times as much, in mean square: half of the variance is taken to
+    /// go with it.
+    pub fn in_dissent(self, times: f64) -> Self {
+        Self { variance_m2: 0.5 * (1.0 + times) * self.variance_m2, ..self }
+    }
+
     /// Sigma in metres of frame `t` of a gap.
     pub fn sigma_m(&self, t: usize, gap: &std::ops::Range<usize>, sides: Sides) -> f64 {
         let (before, after) = distances(t, gap, sides);
         let seconds = gap.len() as f64 / self.rate_hz;
-        let factor = (seconds / PAR_S).powf(GROWTH).clamp(*FACTOR.start(), *FACTOR.end());
-        factor * (self.variance_m2 * open_share(before, after, self.tau)).sqrt()
+        (seconds / PAR_S).powf(GROWTH)
+            * (self.variance_m2 * open_share(before, after, self.tau)).sqrt()
     }
 }
 

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)] // tests
 
 mod auto;
+mod properties;
 
 use std::ops::ControlFlow;
 
