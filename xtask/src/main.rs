@@ -48,6 +48,7 @@ enum Task {
     Data(data::Task),
     ReproducePaper(repro::Paper),
     Leaderboard(repro::Board),
+    SynthReport(repro::Synth),
 }
 
 fn main() -> ExitCode {
@@ -70,6 +71,7 @@ fn run(task: &Task) -> anyhow::Result<ExitCode> {
         Task::Data(task) => data::run(task)?,
         Task::ReproducePaper(options) => return repro::paper(&root, options),
         Task::Leaderboard(options) => return repro::leaderboard(&root, options),
+        Task::SynthReport(options) => return repro::synth(&root, options),
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -67,6 +67,36 @@ struct Options {
 /// The code of a task that cannot be done yet, told apart from one that failed.
 const NOT_YET: u8 = 2;
 
+/// Compare the synthetic people with captured ones
+///
+/// Joint angles, speeds, accelerations and bones by activity; tables, figures and a web page.
+#[derive(Args)]
+pub struct Synth {
+    /// Folder with the recordings [default: the variable `MOCAP_DATA`]
+    #[arg(long, value_name = "DIR")]
+    data: Option<PathBuf>,
+    /// Folder for the results [default: out/synth-report]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Install what is missing without asking
+    #[arg(short, long)]
+    yes: bool,
+}
+
+/// Runs the comparison.
+pub fn synth(root: &Path, synth: &Synth) -> Result<ExitCode> {
+    let Synth { data, out, yes } = synth;
+    let options = Options {
+        data: data.clone(),
+        out: out.clone(),
+        yes: *yes,
+        quick: false,
+        methods: Vec::new(),
+        more: Vec::new(),
+    };
+    run(root, "synth-report", &options, &[])
+}
+
 /// Runs the evaluation of a paper.
 pub fn paper(root: &Path, paper: &Paper) -> Result<ExitCode> {
     match paper.which {

@@ -101,6 +101,17 @@ pub enum CoreError {
          together); use world coordinates"
     )]
     NoBodyFrame,
+    /// Reference markers that leave an axis of a part-local frame undefined.
+    #[error(
+        "a part-local frame needs markers low and high on the part, and a pair of markers along another axis"
+    )]
+    NoPartMarkers,
+    /// A part-local frame cannot be found.
+    #[error(
+        "no frame of the take shows all reference markers of the part at once; fill their gaps first, or choose \
+         reference markers that are seen together"
+    )]
+    NoPartFrame,
     /// A joint list that is not a tree with parents first and one root.
     #[error(
         "joint {joint} (`{name}`) has parent {parent:?}; the root comes first and parents precede children"

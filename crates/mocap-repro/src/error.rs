@@ -39,6 +39,15 @@ pub enum ReproError {
     /// A recording that cannot be read.
     #[error("cannot read a motion")]
     Read(#[from] mocap_io::ReadError),
+    /// None of the recordings that synthetic people are compared with.
+    #[error("{} holds none of the recordings below `cmu` that synthetic people are compared with", .folder.display())]
+    NoTakes {
+        /// Where they were looked for.
+        folder: PathBuf,
+    },
+    /// A synthetic take that cannot be made.
+    #[error("cannot synthesise a take")]
+    Synth(#[from] mocap_synth::SynthError),
     /// A list of trials without a column that it needs.
     #[error("{} has no column `{column}`; it needs {needed} and has {found}", .path.display())]
     Column {

@@ -18,6 +18,7 @@ mod section;
 mod store;
 mod summary;
 mod sureness;
+mod synth;
 mod trial;
 
 pub use bolero::{Evaluation, bolero_report};
@@ -36,6 +37,7 @@ pub use section::Section;
 pub use store::Store;
 pub use summary::{Duel, Row, Stats, duels, summarise};
 pub use sureness::{LENGTH_EDGES_S, MULTIPLES, Sureness};
+pub use synth::synth_report;
 pub use trial::{Hide, Trial, fixture_trials, read_trials};
 
 /// What tells the results of two builds apart: the version of this crate, and a fingerprint of the

@@ -16,9 +16,11 @@ use mocap_repro::{
 
 mod meter;
 mod raw_task;
+mod synth_task;
 
 use meter::Meter;
 use raw_task::Raw;
+use synth_task::SynthReport;
 
 /// Runs every gap-filling method on the same gaps, and sets the results beside the published ones.
 ///
@@ -35,6 +37,7 @@ enum Task {
     Bolero(Bolero),
     Leaderboard(Leaderboard),
     Raw(Raw),
+    SynthReport(SynthReport),
 }
 
 /// The evaluation of the BoLeRO paper: case studies, 90 trials twice over, sweeps, tables and figures
@@ -99,6 +102,7 @@ fn main() -> ExitCode {
         Task::Bolero(task) => task.run(),
         Task::Leaderboard(task) => task.run(),
         Task::Raw(task) => task.run(),
+        Task::SynthReport(task) => task.run(),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

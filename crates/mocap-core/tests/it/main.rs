@@ -5,6 +5,7 @@ mod body_frame;
 mod bones;
 mod kinematics;
 mod knowledge;
+mod part_frame;
 mod rotations;
 mod skeleton;
 mod takes;

@@ -1,0 +1,278 @@
+use std::path::Path;
+
+use mocap_core::{Take, geometry::norm};
+use mocap_io::{MarkerFile, MotionFile, ReadOptions};
+use mocap_synth::{Activity, Person, Synth, SynthParams, SyntheticTake, record_all};
+use ndarray::ArrayView3;
+
+use super::angles::Angles;
+use crate::ReproError;
+
+/// One activity: what was captured of it, and what is synthesised.
+#[derive(Debug)]
+pub(super) struct Group {
+    pub activity: &'static str,
+    /// Names of the captured takes.
+    pub captured_motions: String,
+    pub captured_markers: String,
+    /// Captured, synthetic.
+    pub joints: [Rates; 2],
+    pub markers: [Rates; 2],
+    pub angles: [Angles; 2],
+}
+
+/// Speeds and accelerations.
+#[derive(Debug, Default)]
+pub(super) struct Rates {
+    pub takes: usize,
+    /// Speeds in m/s, accelerations in m/s².
+    pub values: [Vec<f64>; 2],
+}
+
+/// An activity and the recordings that show the like.
+struct Captured {
+    activity: Activity,
+    /// Joint motion, below `cmu`, without the ending.
+    motions: &'static [&'static str],
+    /// Marker files, below `cmu`.
+    markers: &'static [&'static str],
+}
+
+/// By the database's own descriptions. Of reaching there is drinking and scooping, of turning walks round a corner, of
+/// kicking one ball; throwing has markers alone.
+const CAPTURED: [Captured; 7] = [
+    Captured {
+        activity: Activity::Walk,
+        motions: &[
+            "paired/02_01",
+            "asfamc/02/02_02",
+            "asfamc/05/05_01",
+            "asfamc/07/07_01",
+            "asfamc/07/07_02",
+            "asfamc/07/07_06",
+            "asfamc/07/07_07",
+            "asfamc/07/07_08",
+            "asfamc/07/07_09",
+            "asfamc/07/07_10",
+            "asfamc/07/07_11",
+            "asfamc/16/16_22",
+            "asfamc/16/16_23",
+            "asfamc/16/16_24",
+            "asfamc/16/16_25",
+            "asfamc/16/16_26",
+            "asfamc/16/16_27",
+            "asfamc/16/16_29",
+        ],
+        markers: &["paired/02_01.c3d"],
+    },
+    Captured {
+        activity: Activity::Run,
+        motions: &[
+            "asfamc/02/02_03",
+            "asfamc/09/09_01",
+            "asfamc/09/09_02",
+            "asfamc/09/09_03",
+            "asfamc/09/09_04",
+            "asfamc/09/09_05",
+            "asfamc/09/09_06",
+            "asfamc/09/09_07",
+            "asfamc/09/09_08",
+            "asfamc/09/09_09",
+            "asfamc/09/09_10",
+            "asfamc/09/09_11",
+            "asfamc/16/16_35",
+            "asfamc/16/16_36",
+            "asfamc/16/16_37",
+            "asfamc/16/16_39",
+            "asfamc/16/16_45",
+            "asfamc/16/16_46",
+            "asfamc/127/127_03",
+            "asfamc/127/127_06",
+            "paired/127_07",
+            "asfamc/127/127_08",
+        ],
+        markers: &["bolero-nine/127_07.csv.gz"],
+    },
+    Captured {
+        activity: Activity::Jump,
+        motions: &["asfamc/16/16_01", "asfamc/16/16_04", "asfamc/16/16_05", "asfamc/02/02_04"],
+        markers: &["bolero-nine/141_04.csv.gz"],
+    },
+    Captured { activity: Activity::Throw, motions: &[], markers: &["bolero-nine/143_22.csv.gz"] },
+    Captured {
+        activity: Activity::Turn,
+        motions: &["asfamc/16/16_27", "asfamc/16/16_28", "asfamc/16/16_29", "asfamc/16/16_30"],
+        markers: &[],
+    },
+    Captured {
+        activity: Activity::Reach,
+        motions: &["asfamc/14/14_04", "asfamc/14/14_05", "asfamc/14/14_37", "asfamc/02/02_06"],
+        markers: &[],
+    },
+    Captured { activity: Activity::Kick, motions: &["asfamc/11/11_01"], markers: &[] },
+];
+
+/// Rate of the recordings, which their tables do not state.
+const RATE_HZ: f64 = 120.0;
+/// Frames on either side of a central difference: of joints' accelerations, and of all else.
+const WIDE: usize = 4;
+const NARROW: usize = 1;
+
+/// Reads what is there, and synthesises as much of each activity.
+pub(super) fn read(data: &Path, progress: &mut dyn FnMut(&str)) -> Result<Vec<Group>, ReproError> {
+    let mut groups = Vec::new();
+    for captured in &CAPTURED {
+        progress(super::name(captured.activity));
+        let mut group = synthetic(captured.activity)?;
+        for name in captured.motions {
+            let path = data.join("cmu").join(format!("{name}.amc"));
+            if path.is_file() {
+                group.add_motion(&path)?;
+            }
+        }
+        for name in captured.markers {
+            let path = data.join("cmu").join(name);
+            if path.is_file() {
+                group.add_markers(&path)?;
+            }
+        }
+        group.sort();
+        groups.push(group);
+    }
+    if groups.iter().all(|group| group.joints[0].takes + group.markers[0].takes == 0) {
+        return Err(ReproError::NoTakes { folder: data.to_owned() });
+    }
+    Ok(groups)
+}
+
+/// Eight people for twelve seconds each.
+fn synthetic(activity: Activity) -> Result<Group, ReproError> {
+    let params: Vec<SynthParams> = (100..108)
+        .map(|seed| SynthParams {
+            motion: activity,
+            frames: 1440,
+            seed,
+            person: Some(Person::draw(seed)),
+            ..SynthParams::default()
+        })
+        .collect();
+    let mut group = Group {
+        activity: super::name(activity),
+        captured_motions: String::new(),
+        captured_markers: String::new(),
+        joints: Default::default(),
+        markers: Default::default(),
+        angles: Default::default(),
+    };
+    for recorded in record_all(&params)? {
+        group.joints[1].add_joints(&recorded);
+        group.markers[1].add_take(recorded.take());
+        group.angles[1].add(recorded.motion())?;
+    }
+    Ok(group)
+}
+
+impl Group {
+    /// A recorded motion on the template.
+    fn add_motion(&mut self, path: &Path) -> Result<(), ReproError> {
+        let file = MotionFile::read(path, None, &ReadOptions::default())?;
+        let frames = file.motion().poses().len();
+        let params =
+            SynthParams { frames, soft_tissue: 0.0, noise_m: 0.0, ..SynthParams::default() };
+        let recorded = Synth::retarget(params, file.motion())?.take()?;
+        self.joints[0].add_joints(&recorded);
+        self.angles[0].add(recorded.motion())?;
+        list(&mut self.captured_motions, path);
+        Ok(())
+    }
+
+    fn add_markers(&mut self, path: &Path) -> Result<(), ReproError> {
+        let options = ReadOptions { rate_hz: Some(RATE_HZ), ..ReadOptions::default() };
+        let file = MarkerFile::read(path, &options)?;
+        let take = file.take();
+        let labelled: Vec<usize> = (0..take.marker_count())
+            .filter(|&m| !take.markers().split(m).1.starts_with('*'))
+            .collect();
+        self.markers[0].add_take(&take.select(&labelled)?);
+        list(&mut self.captured_markers, path);
+        Ok(())
+    }
+
+    fn sort(&mut self) {
+        for rates in self.joints.iter_mut().chain(&mut self.markers) {
+            rates.values.iter_mut().for_each(|values| values.sort_by(f64::total_cmp));
+        }
+        self.angles.iter_mut().for_each(Angles::sort);
+    }
+}
+
+/// Appends the name of a recording.
+fn list(names: &mut String, path: &Path) {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let name = name.split('.').next().unwrap_or_default();
+    if !names.is_empty() {
+        names.push_str(", ");
+    }
+    names.push_str(name);
+}
+
+impl Rates {
+    /// The joints of the limbs and the head.
+    fn add_joints(&mut self, recorded: &SyntheticTake) {
+        const JOINTS: [&str; 13] = [
+            "pelvis",
+            "head",
+            "left_shoulder",
+            "left_elbow",
+            "left_wrist",
+            "right_shoulder",
+            "right_elbow",
+            "right_wrist",
+            "left_knee",
+            "left_ankle",
+            "right_knee",
+            "right_ankle",
+            "upper_spine",
+        ];
+        let skeleton = recorded.motion().skeleton();
+        let rate_hz = recorded.motion().rate_hz();
+        for joint in JOINTS.iter().filter_map(|name| skeleton.find(name)) {
+            self.add(rate_hz, WIDE, recorded.joints().dim().0, |t| {
+                Some(of(recorded.joints(), t, joint))
+            });
+        }
+        self.takes += 1;
+    }
+
+    fn add_take(&mut self, take: &Take) {
+        for m in 0..take.marker_count() {
+            self.add(take.rate_hz(), NARROW, take.frames(), |t| take.position(t, m));
+        }
+        self.takes += 1;
+    }
+
+    fn add(
+        &mut self,
+        rate_hz: f64,
+        wide: usize,
+        frames: usize,
+        at: impl Fn(usize) -> Option<[f64; 3]>,
+    ) {
+        let step_s = wide as f64 / rate_hz;
+        for t in wide..frames.saturating_sub(wide) {
+            let near = [t - NARROW, t, t + NARROW].map(&at);
+            let far = [t - wide, t, t + wide].map(&at);
+            let ([Some(p), Some(_), Some(r)], [Some(a), Some(b), Some(c)]) = (near, far) else {
+                continue;
+            };
+            let speed = [0, 1, 2].map(|k| 0.5 * (r[k] - p[k]) * rate_hz / NARROW as f64);
+            let bend = [0, 1, 2].map(|k| (c[k] - 2.0 * b[k] + a[k]) / (step_s * step_s));
+            self.values[0].push(norm(speed));
+            self.values[1].push(norm(bend));
+        }
+    }
+}
+
+fn of(joints: ArrayView3<'_, f64>, t: usize, joint: usize) -> [f64; 3] {
+    [0, 1, 2].map(|a| joints[(t, joint, a)])
+}
