@@ -89,7 +89,9 @@ impl PartMarkers {
     /// 57-marker layouts of [Pan23] and of the CMU set; `None` for takes that wear neither.
     #[must_use]
     pub fn waist(markers: &MarkerSet) -> Option<Self> {
-        const WAISTS: [(&[&str], &[(&str, &str)]); 3] = [
+        /// Markers of a waist, and its pairs from back to front.
+        type Waist = (&'static [&'static str], &'static [(&'static str, &'static str)]);
+        const WAISTS: [Waist; 3] = [
             (
                 &["LFWT", "MFWT", "RFWT", "LBWT", "MBWT", "RBWT"],
                 &[("RBWT", "RFWT"), ("MBWT", "MFWT"), ("LBWT", "LFWT")],
@@ -290,10 +292,12 @@ fn fit(take: &Take, frame: usize, shape: &[Anchor]) -> Option<RigidTransform> {
         return None;
     }
     let total: f64 = seen.iter().map(|(anchor, _)| anchor.weight).sum();
-    let centre = |of: &dyn Fn(&(&Anchor, [f64; 3])) -> [f64; 3]| {
-        seen.iter().fold([0.0; 3], |sum, s| add(sum, scale(s.0.weight / total, of(s))))
-    };
-    let (from, to) = (centre(&|s| s.0.place), centre(&|s| s.1));
+    let (mut from, mut to) = ([0.0; 3], [0.0; 3]);
+    for (anchor, place) in &seen {
+        let share = anchor.weight / total;
+        from = add(from, scale(share, anchor.place));
+        to = add(to, scale(share, *place));
+    }
     let mut sums = [[0.0; 3]; 3];
     let mut spread = [[0.0; 3]; 3];
     for (anchor, place) in &seen {

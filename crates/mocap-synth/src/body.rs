@@ -82,6 +82,10 @@ pub(crate) struct Build {
     hand: f64,
 }
 
+/// From the centre of the elbow to that of the wrist over the template's length, for an average man: close to the
+/// length between the landmarks, which the template falls short of.
+const FOREARM_JOINTS: f64 = 1.05;
+
 impl Build {
     /// Draws a body of this stature: longer legs come with a shorter trunk, and girth, shoulders,
     /// arms and feet vary on their own.
@@ -141,7 +145,7 @@ impl Build {
             stature: size,
             girth: f(Measure::WaistCircumference),
             upper_arm: f(Measure::UpperArm),
-            forearm: f(Measure::Forearm),
+            forearm: FOREARM_JOINTS * f(Measure::Forearm),
             thigh: column[2] / COLUMN_M[2],
             shank: column[1] / COLUMN_M[1],
             foot: f(Measure::FootLength),

@@ -14,6 +14,7 @@ pub(crate) enum Stream {
     Noise,
     Person,
     Hands,
+    Habits,
 }
 
 /// Random numbers with the same bits on every platform.

@@ -4,6 +4,7 @@ mod body;
 mod curve;
 mod dice;
 mod error;
+mod habit;
 mod hand;
 mod layout;
 mod math;

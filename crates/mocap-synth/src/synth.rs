@@ -9,6 +9,7 @@ use crate::{
     body::{Body, Build},
     curve::Wobble,
     dice::{Dice, Stream},
+    habit::Habits,
     hand::Fingers,
     layout::{self, Hands, Worn},
     motion::{Choreography, choreography},
@@ -23,6 +24,8 @@ pub struct Synth {
     body: Body,
     worn: Vec<Worn>,
     source: Source,
+    /// Of a person.
+    habits: Option<Habits>,
     /// Left, right.
     fingers: Option<[Fingers; 2]>,
     breath: Wobble,
@@ -116,7 +119,8 @@ impl Synth {
             let mut dice = Dice::new(seed, Stream::Hands);
             [0, 1].map(|side| Fingers::new(side, seconds, &mut dice))
         });
-        Ok(Self { params: *params, body, worn, source, fingers, breath })
+        let habits = params.person.map(|_| Habits::new(&mut Dice::new(seed, Stream::Habits)));
+        Ok(Self { params: *params, body, worn, source, habits, fingers, breath })
     }
 
     /// The parameters.
@@ -179,7 +183,13 @@ impl Synth {
     /// Pose and breath at a time in seconds, with the joints' frames.
     fn moment(&self, time: f64, frames: &mut Frames) -> (Pose, f64) {
         let mut pose = match &self.source {
-            Source::Generator(c) => rig::pose(&self.body, &c.posture(&self.body, time)),
+            Source::Generator(choreography) => {
+                let mut posture = choreography.posture(&self.body, time);
+                if let Some(habits) = &self.habits {
+                    habits.put_on(&mut posture, time);
+                }
+                rig::pose(&self.body, &posture)
+            }
             Source::Recording(retarget) => retarget.pose(time),
         };
         for fingers in self.fingers.iter().flatten() {

@@ -27,7 +27,7 @@ const BONES: [Bone; 8] = [
     bone("shank", ["ltibia", "lfoot"], ["left_knee", "left_ankle"]),
     bone("foot", ["lfoot", "ltoes"], ["left_ankle", "left_toe"]),
     bone("hips", ["lfemur", "rfemur"], ["left_hip", "right_hip"]),
-    bone("trunk", ["root", "lowerneck"], ["pelvis", "neck"]),
+    bone("hip to head", ["lfemur", "head"], ["left_hip", "head"]),
     bone("shoulders", ["lhumerus", "rhumerus"], ["left_shoulder", "right_shoulder"]),
     bone("upper arm", ["lhumerus", "lradius"], ["left_shoulder", "left_elbow"]),
     bone("forearm", ["lradius", "lhand"], ["left_elbow", "left_wrist"]),

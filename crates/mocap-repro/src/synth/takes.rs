@@ -114,33 +114,35 @@ const CAPTURED: [Captured; 7] = [
 
 /// Rate of the recordings, which their tables do not state.
 const RATE_HZ: f64 = 120.0;
-/// Frames on either side of a central difference: of joints' accelerations, and of all else.
+/// Frames on either side of a central difference, of accelerations and of speeds.
 const WIDE: usize = 4;
 const NARROW: usize = 1;
 
 /// Reads what is there, and synthesises as much of each activity.
 pub(super) fn read(data: &Path, progress: &mut dyn FnMut(&str)) -> Result<Vec<Group>, ReproError> {
+    let paths = |captured: &Captured| {
+        let motions = captured.motions.iter().map(|name| format!("{name}.amc"));
+        let all = motions.chain(captured.markers.iter().map(|name| (*name).to_owned()));
+        all.map(|name| data.join("cmu").join(name))
+            .filter(|path| path.is_file())
+            .collect::<Vec<_>>()
+    };
+    if CAPTURED.iter().all(|captured| paths(captured).is_empty()) {
+        return Err(ReproError::NoTakes { folder: data.to_owned() });
+    }
     let mut groups = Vec::new();
     for captured in &CAPTURED {
         progress(super::name(captured.activity));
         let mut group = synthetic(captured.activity)?;
-        for name in captured.motions {
-            let path = data.join("cmu").join(format!("{name}.amc"));
-            if path.is_file() {
+        for path in paths(captured) {
+            if path.extension().is_some_and(|e| e == "amc") {
                 group.add_motion(&path)?;
-            }
-        }
-        for name in captured.markers {
-            let path = data.join("cmu").join(name);
-            if path.is_file() {
+            } else {
                 group.add_markers(&path)?;
             }
         }
         group.sort();
         groups.push(group);
-    }
-    if groups.iter().all(|group| group.joints[0].takes + group.markers[0].takes == 0) {
-        return Err(ReproError::NoTakes { folder: data.to_owned() });
     }
     Ok(groups)
 }
@@ -237,31 +239,23 @@ impl Rates {
         let skeleton = recorded.motion().skeleton();
         let rate_hz = recorded.motion().rate_hz();
         for joint in JOINTS.iter().filter_map(|name| skeleton.find(name)) {
-            self.add(rate_hz, WIDE, recorded.joints().dim().0, |t| {
-                Some(of(recorded.joints(), t, joint))
-            });
+            self.add(rate_hz, recorded.joints().dim().0, |t| Some(of(recorded.joints(), t, joint)));
         }
         self.takes += 1;
     }
 
     fn add_take(&mut self, take: &Take) {
         for m in 0..take.marker_count() {
-            self.add(take.rate_hz(), NARROW, take.frames(), |t| take.position(t, m));
+            self.add(take.rate_hz(), take.frames(), |t| take.position(t, m));
         }
         self.takes += 1;
     }
 
-    fn add(
-        &mut self,
-        rate_hz: f64,
-        wide: usize,
-        frames: usize,
-        at: impl Fn(usize) -> Option<[f64; 3]>,
-    ) {
-        let step_s = wide as f64 / rate_hz;
-        for t in wide..frames.saturating_sub(wide) {
+    fn add(&mut self, rate_hz: f64, frames: usize, at: impl Fn(usize) -> Option<[f64; 3]>) {
+        let step_s = WIDE as f64 / rate_hz;
+        for t in WIDE..frames.saturating_sub(WIDE) {
             let near = [t - NARROW, t, t + NARROW].map(&at);
-            let far = [t - wide, t, t + wide].map(&at);
+            let far = [t - WIDE, t, t + WIDE].map(&at);
             let ([Some(p), Some(_), Some(r)], [Some(a), Some(b), Some(c)]) = (near, far) else {
                 continue;
             };

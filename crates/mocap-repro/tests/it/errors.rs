@@ -150,3 +150,10 @@ fn the_program_runs_a_small_matrix() {
     }
     assert!(fixtures().is_dir());
 }
+
+#[test]
+fn a_folder_without_captured_takes_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let refused = mocap_repro::synth_report(folder.path(), &mut |_| ()).unwrap_err();
+    assert!(matches!(&refused, ReproError::NoTakes { folder: named } if named == folder.path()));
+}

@@ -9,6 +9,7 @@ use crate::{
 
 /// What tells walking from running. Lengths in metres of the template, angles in radians, phases as
 /// shares of a cycle (two steps) from a foot's first contact.
+#[derive(Clone, Copy)]
 pub(crate) struct Style {
     cycles_hz: f64,
     stride: f64,
@@ -108,6 +109,19 @@ pub(crate) const RUN: Style = Style {
     trunk_turn: degrees(16.0),
 };
 
+impl Style {
+    /// The same gait as people of the CMU database go: brisker, the knee bent more in the swing.
+    pub(crate) fn of_people(&self) -> Self {
+        Self {
+            cycles_hz: 1.02 * self.cycles_hz,
+            stride: 1.05 * self.stride,
+            lift: 1.25 * self.lift,
+            crouch: 0.9 * self.crouch,
+            ..*self
+        }
+    }
+}
+
 /// One footprint: where the foot stands flat and how it got there.
 struct Footfall {
     flat: [f64; 2],
@@ -118,7 +132,7 @@ struct Footfall {
 
 /// Walking or running round a track.
 pub(crate) struct Gait {
-    style: &'static Style,
+    style: Style,
     size: f64,
     cycles_hz: f64,
     stride: f64,
@@ -138,7 +152,7 @@ pub(crate) struct Gait {
 }
 
 impl Gait {
-    pub(crate) fn new(style: &'static Style, body: &Body, seconds: f64, dice: &mut Dice) -> Self {
+    pub(crate) fn new(style: Style, body: &Body, seconds: f64, dice: &mut Dice) -> Self {
         let size = body.leg() / 0.852;
         let radius = style.radius * size;
         let heading = dice.uniform(0.0, TAU);
@@ -197,7 +211,7 @@ impl Gait {
     }
 
     fn footfall(&self, cycle: f64, side: f64, dice: &mut Dice) -> Footfall {
-        let style = self.style;
+        let style = &self.style;
         let lead = self.size * (style.lead + dice.jitter(0.012));
         let left = self.size * (side * style.width + dice.jitter(0.010));
         let spot = self.track.at(self.progress(cycle) + lead);
@@ -240,7 +254,7 @@ impl Gait {
     }
 
     fn arm(&self, arm: usize, time: f64, wave: f64) -> Arm {
-        let style = self.style;
+        let style = &self.style;
         let swing = style.arm_swing * (1.0 + self.swing[arm].at(time));
         // The elbow bends as the arm comes forward.
         let elbow = style.elbow + style.elbow_swing * wave + self.elbows[arm].at(time);
@@ -259,7 +273,7 @@ impl Gait {
 
 impl Choreography for Gait {
     fn posture(&self, body: &Body, time: f64) -> Posture {
-        let style = self.style;
+        let style = &self.style;
         let cycle = self.cycle(time);
         let turn = TAU * cycle;
         let step = 2.0 * (turn - TAU * style.lowest);

@@ -131,8 +131,8 @@ impl Kick {
 
 impl Strike {
     fn sample(start: f64, size: f64, dice: &mut Dice) -> Self {
-        let mut time = start + dice.uniform(0.1, 0.8);
-        let pace = dice.around(1.0, 0.07);
+        let mut time = start + dice.uniform(0.05, 0.35);
+        let pace = dice.around(0.94, 0.07);
         let vigour: [f64; CHANNELS] = std::array::from_fn(|_| dice.around(1.0, 0.06));
         let mut keys = vec![(start, Self::values(0, size, &vigour))];
         for (key, length) in PACE_S.into_iter().enumerate() {

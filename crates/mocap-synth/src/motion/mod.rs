@@ -29,9 +29,11 @@ pub(crate) fn choreography(
     seconds: f64,
     dice: &mut Dice,
 ) -> Box<dyn Choreography> {
+    // A body with a skin is a person.
+    let style = |style: &gait::Style| if body.surface { style.of_people() } else { *style };
     match activity {
-        Activity::Walk => Box::new(gait::Gait::new(&gait::WALK, body, seconds, dice)),
-        Activity::Run => Box::new(gait::Gait::new(&gait::RUN, body, seconds, dice)),
+        Activity::Walk => Box::new(gait::Gait::new(style(&gait::WALK), body, seconds, dice)),
+        Activity::Run => Box::new(gait::Gait::new(style(&gait::RUN), body, seconds, dice)),
         Activity::Jump => Box::new(jump::Jump::new(body, seconds, dice)),
         Activity::Throw => Box::new(throw::Throw::new(body, seconds, dice)),
         Activity::Turn => Box::new(turn::Turn::new(body, seconds, dice)),

@@ -54,8 +54,8 @@ impl Goal {
         let arms = if both { [true; 2] } else { [side == 0, side == 1] };
         // Tables and shelves more often than floors and ceilings.
         let up = match dice.unit() {
-            u if u < 0.22 => dice.uniform(0.35, 0.75),
-            u if u < 0.75 => dice.uniform(0.85, 1.35),
+            u if u < 0.35 => dice.uniform(0.12, 0.75),
+            u if u < 0.78 => dice.uniform(0.85, 1.35),
             _ => dice.uniform(1.45, 1.95),
         };
         let step = if dice.unit() < 0.35 { dice.uniform(0.2, 0.45) } else { 0.0 };
@@ -79,15 +79,15 @@ impl Plan {
         let shoulder = 1.43 * size;
         let [ahead, left, up] = goal.place;
         let far = ((ahead - goal.step).hypot(left) / size - 0.55).clamp(0.0, 0.4);
-        let low = ((shoulder - 0.30 * size - up) / size).clamp(0.0, 0.75);
+        let low = ((shoulder - 0.30 * size - up) / size).clamp(0.0, 1.0);
         let high = ((up - shoulder) / size).clamp(0.0, 0.5);
         let azimuth = atan2(left, ahead);
         let one = goal.arms[0] != goal.arms[1];
         // With one hand the shoulder comes forward; with two the trunk stays square.
         let side = if goal.arms[0] { 1.0 } else { -1.0 };
         let turn = if one { 0.55 * azimuth - side * (0.12 + 0.5 * far) } else { 0.7 * azimuth };
-        let squat = 0.34 * low * size;
-        let bend = degrees(62.0) * low + degrees(38.0) * far - degrees(12.0) * high;
+        let squat = 0.30 * low * size;
+        let bend = degrees(70.0) * low + degrees(38.0) * far - degrees(12.0) * high;
         let hips_back = -0.11 * low * size;
         let trunk = [
             0.55 * goal.step + 0.04 * far * size + hips_back,
@@ -206,8 +206,8 @@ impl Reach {
             let goal = Goal::sample(size, dice);
             let plan = Plan::new(body, &goal);
             let go = dice.around(0.78, 0.15) + 0.25 * goal.step / size;
-            let hold = dice.uniform(0.12, 0.5);
-            let rest = dice.uniform(0.1, 0.6);
+            let hold = dice.uniform(0.08, 0.35);
+            let rest = dice.uniform(0.03, 0.3);
             let start = time + rest;
             let (there, leave) = (start + go, start + go + hold);
             let fetched = leave + dice.around(0.6, 0.15);

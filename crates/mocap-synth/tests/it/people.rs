@@ -92,6 +92,42 @@ fn bones_of_people_vary_and_never_stretch() {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn joints_of_people_turn_no_further_than_joints_do(seed in any::<u64>(), activity in 0_usize..7) {
+        let person = Some(Person::draw(seed));
+        let motion = Activity::ALL[activity];
+        let recorded = record(SynthParams { person, frames: 600, ..params(motion, seed) });
+        let skeleton = recorded.motion().skeleton();
+        let turned = |name: &str| {
+            let joint = skeleton.find(name).unwrap();
+            recorded.motion().poses().iter().map(move |pose| pose.rotations[joint])
+        };
+        // Hinges turn about y, the forearm's own turn aside: knees back, elbows ahead.
+        for (part, sign) in [("knee", 1.0), ("elbow", -1.0)] {
+            for side in ["left", "right"] {
+                for rotation in turned(&format!("{side}_{part}")) {
+                    let (w, v) = rotation.quaternion();
+                    let bend = (2.0 * (sign * v[1]).atan2(w)).to_degrees();
+                    prop_assert!((0.0..150.0).contains(&bend), "{motion} {side} {part}: {bend}");
+                }
+            }
+        }
+        // From neutral, in any direction; ranges of healthy adults, spine and neck by the joint.
+        let ends = [
+            ("lower_spine", 25.0), ("middle_spine", 25.0), ("upper_spine", 25.0), ("neck", 50.0), ("head", 50.0),
+            ("left_wrist", 75.0), ("right_wrist", 75.0), ("left_hip", 130.0), ("right_hip", 130.0),
+            ("left_clavicle", 60.0), ("right_clavicle", 60.0),
+        ];
+        for (name, most) in ends {
+            let largest = turned(name).map(|r| r.angle().to_degrees()).fold(0.0, f64::max);
+            prop_assert!(largest < most, "{motion} {name}: {largest}");
+        }
+    }
+}
+
+proptest! {
     #[test]
     fn every_person_is_put_together_in_order(seed in any::<u64>()) {
         let person = Person::draw(seed);
