@@ -11,3 +11,4 @@ pub use joined::{Borders, Joined};
 pub use lds_kalman::Start;
 pub use options::{Bones, Coordinates, Options};
 pub use registry::{BuildError, DEFAULT, METHODS, Method, build};
+pub use solve_ik::Body;

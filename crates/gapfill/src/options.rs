@@ -1,4 +1,5 @@
 use mocap_core::{BoneRule, BoneSet, CoreError, MarkerKnowledge, Take};
+use solve_ik::Body;
 
 use crate::{Borders, Edges, Start};
 
@@ -33,10 +34,12 @@ pub struct Options {
     /// What becomes of the step at the borders of a gap; `None`: the method's own choice, which is to
     /// join for `lds` and `bolero-sc`.
     pub borders: Option<Borders>,
+    /// Bodies that a kinematic fill may find; the first whose root a take shows counts.
+    pub bodies: Vec<Body>,
 }
 
 impl Default for Options {
-    /// Everything from the data, with the built-in marker set.
+    /// Everything from the data, with the built-in marker set and body.
     fn default() -> Self {
         let known = vec![MarkerKnowledge::cmu_41()];
         Self {
@@ -52,6 +55,7 @@ impl Default for Options {
             edges: Edges::default(),
             max_error_m: None,
             borders: None,
+            bodies: vec![Body::cmu_41()],
         }
     }
 }

@@ -10,6 +10,7 @@ use edm_mds::Edm;
 use lds_kalman::filler::{self, LdsFiller, LdsFillerParams};
 use locality_ridge::LocalRidge;
 use mocap_core::{BoneRule, BoneSet, FillError, GapFiller, MarkerKnowledge, MarkerSet};
+use solve_ik::{IkFiller, IkParams};
 use thiserror::Error;
 
 use crate::{Auto, AutoParams, Bones, Borders, Coordinates, Joined, Options};
@@ -144,6 +145,12 @@ pub const METHODS: &[Method] = &[
         ],
         build: hard_bones,
     },
+    Method {
+        id: "ik",
+        summary: "a skeleton solved for the whole body; for whole limbs that are gone; knows the CMU and Plug-in Gait markers",
+        options: &["bodies"],
+        build: kinematic,
+    },
 ];
 
 /// Why a method cannot be built.
@@ -197,6 +204,12 @@ fn auto(options: &Options) -> Result<Box<dyn GapFiller>, FillError> {
     let lds = dynamical_system(LdsFillerParams::default(), Borders::Join, &joined)?;
     let params = AutoParams { max_error_m: options.max_error_m, edges: options.edges };
     Ok(Box::new(Auto::with_systems(params, lds, soft_bones(&joined)?)?))
+}
+
+fn kinematic(options: &Options) -> Result<Box<dyn GapFiller>, FillError> {
+    let filler = IkFiller::new(options.bodies.clone(), IkParams::default());
+    let failed = |source| FillError::Method { method: "ik", source: Box::new(source) };
+    Ok(Box::new(filler.map_err(failed)?))
 }
 
 fn dynamical_system(

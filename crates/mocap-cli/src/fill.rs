@@ -305,6 +305,7 @@ impl MethodArgs {
                 BordersArg::Join => Borders::Join,
                 BordersArg::Keep => Borders::Keep,
             }),
+            ..Options::default()
         })
     }
 }

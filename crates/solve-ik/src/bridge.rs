@@ -1,13 +1,15 @@
 //! What joints do while no marker shows them: they pass smoothly from where they were to where they are seen next.
 
-use std::ops::Range;
+use std::{collections::BTreeMap, ops::Range};
 
 use mocap_core::{
     Rotation,
     geometry::{add, scale},
 };
+use rayon::prelude::*;
 
 use crate::{
+    companion::Seen,
     sight::Sight,
     track::{Guide, Inertia},
     tree::{State, Tree},
@@ -21,11 +23,16 @@ const FIRM_M: f64 = 0.02;
 const SPEED_S: f64 = 0.05;
 const LASTING_S: f64 = 0.1;
 
+/// Shorter runs are crossed smoothly; there is nothing to gain from the rest of the take.
+const SHORT_S: f64 = 0.15;
+
 /// A run of frames in which a joint is not seen well.
 #[derive(Debug, Clone)]
 struct Span {
     frames: Range<usize>,
     weight: f64,
+    /// Turns learnt from the rest of the take, one a frame; empty where none were.
+    learnt: Vec<Rotation>,
 }
 
 /// Guides the second pass over a take by the poses of the first.
@@ -48,9 +55,12 @@ impl<'a> Bridges<'a> {
         rate_hz: f64,
     ) -> Option<Self> {
         let below = below(tree);
-        let spans: Vec<Vec<Span>> = (0..tree.len()).map(|j| spans(&below[j], sight)).collect();
-        let is_needed = spans.iter().any(|s| !s.is_empty());
-        is_needed.then_some(Self { inertia, states, rate_hz, spans })
+        let mut spans: Vec<Vec<Span>> = (0..tree.len()).map(|j| spans(&below[j], sight)).collect();
+        if spans.iter().all(Vec::is_empty) {
+            return None;
+        }
+        learn(&mut spans, states, rate_hz);
+        Some(Self { inertia, states, rate_hz, spans })
     }
 
     fn span(&self, joint: usize, frame: usize) -> Option<&Span> {
@@ -82,6 +92,9 @@ impl<'a> Bridges<'a> {
     }
 
     fn turn(&self, joint: usize, span: &Span, frame: usize) -> Option<Rotation> {
+        if let Some(turn) = span.learnt.get(frame - span.frames.start) {
+            return Some(*turn);
+        }
         let at = |frame: usize| self.states[frame].turns[joint];
         let (first, last, [way, out, into]) = self.shares(span, frame);
         let (Some(a), Some(b)) = (first, last) else { return first.or(last).map(at) };
@@ -136,18 +149,40 @@ impl Guide for Bridges<'_> {
     }
 }
 
+/// Learns the turns of the longer spans from the rest of the take, those of joints that are lost together at once.
+fn learn(spans: &mut [Vec<Span>], states: &[State], rate_hz: f64) {
+    let mut lost = vec![vec![false; states.len()]; spans.len()];
+    let mut together: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
+    for (joint, spans) in spans.iter().enumerate() {
+        for Range { start, end } in spans.iter().map(|s| s.frames.clone()) {
+            lost[joint][start..end].fill(true);
+            if joint > 0 && (end - start) as f64 >= SHORT_S * rate_hz {
+                together.entry((start, end)).or_default().push(joint);
+            }
+        }
+    }
+    let seen = Seen { states, rate_hz, lost: &lost };
+    let learnt: Vec<_> = together
+        .par_iter()
+        .filter_map(|(&(start, end), joints)| {
+            Some((start, joints, seen.predict(joints, &(start..end))?))
+        })
+        .collect();
+    for (start, joints, turns) in learnt {
+        for (k, &joint) in joints.iter().enumerate() {
+            let span = spans[joint].iter_mut().find(|span| span.frames.start == start);
+            if let Some(span) = span {
+                span.learnt = turns.iter().map(|frame| frame[k]).collect();
+            }
+        }
+    }
+}
+
 /// Markers that each joint moves, as anchors.
 fn below(tree: &Tree) -> Vec<Vec<u32>> {
     let mut below = vec![Vec::new(); tree.len()];
     for (index, anchor) in (0..).zip(&tree.anchors) {
-        let mut joint = anchor.far.map_or(anchor.near, |(far, _)| far);
-        loop {
-            below[joint].push(index);
-            if joint == 0 {
-                break;
-            }
-            joint = tree.parents[joint];
-        }
+        tree.movers(anchor).for_each(|joint| below[joint].push(index));
     }
     below
 }
@@ -171,7 +206,7 @@ fn spans(markers: &[u32], sight: &Sight) -> Vec<Span> {
                 span.frames.end += 1;
                 span.weight = span.weight.max(weight);
             }
-            _ => spans.push(Span { frames: frame..frame + 1, weight }),
+            _ => spans.push(Span { frames: frame..frame + 1, weight, learnt: Vec::new() }),
         }
     }
     // A joint that is never seen has no ends to bridge from.

@@ -13,15 +13,15 @@
 use std::sync::Arc;
 
 use mocap_core::{
-    Skeleton, Take,
-    geometry::{add, cross, distance, dot, scale, sub, times, transposed},
+    Skeleton,
+    geometry::{add, cross, dot, scale, sub, times, transposed},
 };
 use rayon::prelude::*;
 
 use crate::{
     IkError, IkParams,
     body::Body,
-    dense,
+    dense::Cholesky,
     frame::{FrameSolver, Seen, Ties},
     tree::{State, Tree},
 };
@@ -31,6 +31,8 @@ type Matrix = [[f64; 3]; 3];
 /// Frames that say as much as one about where a joint or a marker is: skin slides with the pose, and so the markers of
 /// many frames miss in the same way.
 const ALIKE: f64 = 20.0;
+/// Spread of a joint's place across its bone over that along it: people differ in lengths rather than in directions.
+const ACROSS: f64 = 0.25;
 /// Steps at most, and the share of the cost below which a step is the last.
 const STEPS: usize = 25;
 const ENOUGH: f64 = 1e-5;
@@ -93,8 +95,8 @@ struct Layout {
     offsets: Vec<Option<usize>>,
     /// First block of the markers' places.
     places: usize,
-    /// Expected value and weight of each block.
-    expected: Vec<([f64; 3], f64)>,
+    /// Expected value and weights of each block.
+    expected: Vec<([f64; 3], Matrix)>,
 }
 
 /// Reduced equations of the shared unknowns, solved, and what the frames need to follow.
@@ -117,14 +119,20 @@ impl Layout {
         let mut expected = Vec::new();
         let mut offsets = vec![None; tree.len()];
         if body.bone_spread > 0.0 {
+            let along = ALIKE * body.bone_spread.powi(-2);
+            let across = ALIKE * (ACROSS * body.bone_spread).powi(-2);
             // The root's own offset is part of its translation.
             for (j, offset) in offsets.iter_mut().enumerate().skip(1) {
                 *offset = Some(expected.len());
-                expected.push((template.offsets[j], ALIKE * body.bone_spread.powi(-2)));
+                let bone = template.offsets[j];
+                expected.push((bone, weights(bone, along, across)));
             }
         }
         let places = expected.len();
-        let site = |a: &crate::tree::Anchor| (a.place, ALIKE * body.sites[a.site].spread.powi(-2));
+        let site = |a: &crate::tree::Anchor| {
+            let weight = ALIKE * body.sites[a.site].spread.powi(-2);
+            (a.place, weights(a.place, weight, weight))
+        };
         expected.extend(template.anchors.iter().map(site));
         Self { offsets, places, expected }
     }
@@ -141,7 +149,7 @@ impl Layout {
         let prior: f64 = (0..self.expected.len())
             .map(|block| {
                 let off = sub(self.value(tree, block), self.expected[block].0);
-                self.expected[block].1 * dot(off, off)
+                dot(off, times(&self.expected[block].1, off))
             })
             .sum();
         let free = vec![0.0; tree.len()];
@@ -175,9 +183,12 @@ impl Layout {
         let mut right = vec![0.0; count];
         for (block, (expected, weight)) in self.expected.iter().enumerate() {
             let off = sub(self.value(tree, block), *expected);
-            for (at, off) in (3 * block..).zip(off) {
-                matrix[at * count + at] = *weight;
-                right[at] = -weight * off;
+            let pull = times(weight, off);
+            for r in 0..3 {
+                right[3 * block + r] = -pull[r];
+                for c in 0..=r {
+                    matrix[(3 * block + r) * count + 3 * block + c] = weight[r][c];
+                }
             }
         }
         let mut frames = Vec::with_capacity(samples.len());
@@ -190,7 +201,8 @@ impl Layout {
         for at in 0..count {
             matrix[at * count + at] *= 1.0 + damping;
         }
-        dense::solve(&mut matrix, &mut right).then_some(System { shared: right, frames })
+        Cholesky::new(matrix, count)?.solve(&mut right);
+        Some(System { shared: right, frames })
     }
 
     /// What a frame says about the shared unknowns once its pose is eliminated: lower triangle and gradient.
@@ -322,6 +334,17 @@ impl Layout {
     }
 }
 
+/// Weights of a vector along a direction and across it.
+fn weights(direction: [f64; 3], along: f64, across: f64) -> Matrix {
+    let square = dot(direction, direction).max(f64::MIN_POSITIVE);
+    std::array::from_fn(|r| {
+        std::array::from_fn(|c| {
+            let both = if r == c { across } else { 0.0 };
+            both + (along - across) * direction[r] * direction[c] / square
+        })
+    })
+}
+
 /// Rows of the joints that move a marker, and from where they do.
 fn arms(
     tree: &Tree,
@@ -356,35 +379,4 @@ pub(crate) fn dressed(body: &Body, before: &Tree, after: &Tree) -> Result<Body, 
         site.place = add(site.place, sub(new.place, old.place));
     }
     Ok(Body { skeleton: Arc::new(Skeleton::new(joints)?), sites, ..body.clone() })
-}
-
-/// Size of the wearer over that of the body: the middle ratio of distances between markers that stay the same, or nearly so.
-pub(crate) fn size(body: &Body, columns: &[Option<usize>], take: &Take) -> f64 {
-    /// A distance that varies by more, as a share, says something about the pose.
-    const STEADY: f64 = 0.04;
-    /// Shorter distances say more about where markers were stuck on, in metres.
-    const LONG_M: f64 = 0.2;
-    const FRAMES: usize = 200;
-    let rest = body.rest_places();
-    let step = take.frames().div_ceil(FRAMES).max(1);
-    let mut ratios = Vec::new();
-    for a in 0..rest.len() {
-        for b in 0..a {
-            let (Some(p), Some(q)) = (columns[a], columns[b]) else { continue };
-            let expected = distance(rest[a], rest[b]);
-            if expected < LONG_M {
-                continue;
-            }
-            let seen: Vec<f64> =
-                (0..take.frames()).step_by(step).filter_map(|t| take.distance(t, p, q)).collect();
-            let mean = seen.iter().sum::<f64>() / seen.len().max(1) as f64;
-            let spread =
-                seen.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / seen.len().max(1) as f64;
-            if seen.len() >= FRAMES.min(take.frames()) / 4 && spread.sqrt() < STEADY * mean {
-                ratios.push(mean / expected);
-            }
-        }
-    }
-    ratios.sort_by(f64::total_cmp);
-    ratios.get(ratios.len() / 2).copied().filter(|r| r.is_finite() && *r > 0.0).unwrap_or(1.0)
 }

@@ -1,33 +1,58 @@
 //! A small dense positive definite system.
 
-/// Solves `A x = b` in place for a symmetric positive definite matrix, row by row, of which the lower
-/// triangle is read; `false` if it is not positive definite.
-pub(crate) fn solve(a: &mut [f64], b: &mut [f64]) -> bool {
-    let n = b.len();
-    for j in 0..n {
-        let (above, row) = a.split_at_mut(j * n);
-        for k in 0..j {
-            let other = &above[k * n..k * n + k];
-            let sum: f64 = other.iter().zip(&row[..k]).map(|(x, y)| x * y).sum();
-            row[k] = (row[k] - sum) / above[k * n + k];
+/// The lower triangular factor of a symmetric positive definite matrix, row by row.
+#[derive(Debug, Clone)]
+pub(crate) struct Cholesky {
+    factor: Vec<f64>,
+    size: usize,
+}
+
+impl Cholesky {
+    /// Factors a matrix `(size, size)` of which the lower triangle is read; `None` if it is not positive definite.
+    pub(crate) fn new(mut a: Vec<f64>, size: usize) -> Option<Self> {
+        let n = size;
+        for j in 0..n {
+            let (above, row) = a.split_at_mut(j * n);
+            for k in 0..j {
+                let other = &above[k * n..k * n + k];
+                row[k] = (row[k] - inner(other, &row[..k])) / above[k * n + k];
+            }
+            let square = row[j] - inner(&row[..j], &row[..j]);
+            if !(square.is_finite() && square > 0.0) {
+                return None;
+            }
+            row[j] = square.sqrt();
         }
-        let square = row[j] - row[..j].iter().map(|x| x * x).sum::<f64>();
-        if !(square.is_finite() && square > 0.0) {
-            return false;
+        Some(Self { factor: a, size })
+    }
+
+    /// Solves `A x = b` in place.
+    pub(crate) fn solve(&self, b: &mut [f64]) {
+        let (a, n) = (&self.factor, self.size);
+        for j in 0..n {
+            b[j] = (b[j] - inner(&a[j * n..j * n + j], &b[..j])) / a[j * n + j];
         }
-        row[j] = square.sqrt();
-    }
-    for j in 0..n {
-        let sum: f64 = a[j * n..j * n + j].iter().zip(&b[..j]).map(|(x, y)| x * y).sum();
-        b[j] = (b[j] - sum) / a[j * n + j];
-    }
-    for j in (0..n).rev() {
-        b[j] /= a[j * n + j];
-        for k in 0..j {
-            b[k] -= a[j * n + k] * b[j];
+        for j in (0..n).rev() {
+            b[j] /= a[j * n + j];
+            let x = b[j];
+            for (b, l) in b[..j].iter_mut().zip(&a[j * n..j * n + j]) {
+                *b -= l * x;
+            }
         }
     }
-    true
+}
+
+/// The inner product, in four sums that do not wait for each other.
+pub(crate) fn inner(x: &[f64], y: &[f64]) -> f64 {
+    let mut sums = [0.0; 4];
+    let (x4, y4) = (x.chunks_exact(4), y.chunks_exact(4));
+    let rest: f64 = x4.remainder().iter().zip(y4.remainder()).map(|(a, b)| a * b).sum();
+    for (a, b) in x4.zip(y4) {
+        for k in 0..4 {
+            sums[k] += a[k] * b[k];
+        }
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
 #[cfg(test)]
@@ -47,12 +72,12 @@ mod tests {
         let wanted: Vec<f64> = (0..n).map(|i| i as f64 - 2.5).collect();
         let product = |i: usize| (0..n).map(|j| full[i * n + j] * wanted[j]).sum::<f64>();
         let mut b: Vec<f64> = (0..n).map(product).collect();
-        assert!(solve(&mut full.clone(), &mut b));
+        Cholesky::new(full, n).unwrap().solve(&mut b);
         for (x, y) in b.iter().zip(&wanted) {
             // Condition of some hundreds times a rounding.
             assert!((x - y).abs() < 1e-12);
         }
-        assert!(!solve(&mut [-1.0], &mut [1.0]));
-        assert!(!solve(&mut [f64::NAN], &mut [1.0]));
+        assert!(Cholesky::new(vec![-1.0], 1).is_none());
+        assert!(Cholesky::new(vec![f64::NAN], 1).is_none());
     }
 }

@@ -15,6 +15,8 @@ use crate::{
 
 /// Fills gaps with the markers that the solved body would show: the kinematic fill.
 ///
+/// Joints that no marker shows turn as they did in similar postures of the seen ones elsewhere in the take.
+///
 /// By how much a marker misses its expected place beside a gap, seen from its bone, is carried across the gap, so that
 /// fills join the measured samples. Markers that the body's map does not know ride on the joint from which they look
 /// steadiest.

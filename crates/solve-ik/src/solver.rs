@@ -14,6 +14,7 @@ use crate::{
     choose::diverse,
     frame::Fit,
     sight::Sight,
+    size,
     track::{self, Inertia, Scout, Track},
     tree::{Placed, State, Tree},
 };
@@ -134,7 +135,7 @@ impl IkSolver {
         let columns: Vec<Option<usize>> =
             columns.into_iter().map(|c| c.filter(|&c| is_seen(c))).collect();
         self.check_root(&columns)?;
-        let size = calibrate::size(&self.body, &columns, take);
+        let size = size::size(&self.body, &columns, take);
         let mut template = self.body.clone();
         if self.params.calibration_rounds > 0 {
             if template.bone_spread > 0.0 {

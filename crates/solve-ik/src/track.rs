@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::{
     IkParams,
-    frame::{Fit, FrameSolver, Ties},
+    frame::{Fit, FrameSolver, Seen, Ties},
     sight::Sight,
     start::cold_start,
     tree::{State, Tree},
@@ -21,6 +21,8 @@ pub(crate) const BATCH: usize = 16 * CHUNK;
 const SCOUT_S: f64 = 1.0 / 15.0;
 /// Further steps of a frame that is still moving.
 const HARD_STEPS: usize = 60;
+/// Poses of other frames from which a joint that comes back into view is looked for.
+const GUESSES: usize = 12;
 /// Steps a frame of the scout.
 const SCOUT_STEPS: usize = 20;
 
@@ -57,7 +59,7 @@ pub(crate) fn scout(tree: &Tree, sight: &Sight, params: &IkParams, rate_hz: f64)
     let stride = (rate_hz * SCOUT_S).round().clamp(1.0, CHUNK as f64) as usize;
     let clearest = sight.clearest()?;
     let mut solver = FrameSolver::new(tree, params);
-    let first = cold_start(&mut solver, sight.at(clearest));
+    let first = cold_start(&mut solver, sight.at(clearest))?;
     let count = sight.frames().div_ceil(stride);
     let start = (clearest / stride).min(count - 1);
     let turns = vec![tie(params, stride as f64 / rate_hz); tree.len()];
@@ -65,16 +67,62 @@ pub(crate) fn scout(tree: &Tree, sight: &Sight, params: &IkParams, rate_hz: f64)
     let mut states: Vec<Option<State>> = vec![None; count];
     let mut walk = |from: &State, order: &mut dyn Iterator<Item = usize>| {
         let mut state = from.clone();
+        let mut before = clearest;
         for k in order {
+            let frame = k * stride;
             let target = state.clone();
             let ties = Ties { target: &target, shift, turns: &turns };
-            solver.solve(&mut state, sight.at(k * stride), &ties, SCOUT_STEPS);
+            solver.solve(&mut state, sight.at(frame), &ties, SCOUT_STEPS);
+            let returned: Vec<usize> = sight.newly_shown(frame, before).collect();
+            if !returned.is_empty() {
+                let known: Vec<&State> = states.iter().flatten().collect();
+                let step = known.len().div_ceil(GUESSES).max(1);
+                let mut guesses: Vec<State> = known
+                    .iter()
+                    .step_by(step)
+                    .map(|known| with_turns(&state, known, &returned))
+                    .collect();
+                guesses.extend(cold_start(&mut solver, sight.at(frame)));
+                find_again(&mut solver, &mut state, sight.at(frame), &ties, guesses);
+            }
             states[k] = Some(state.clone());
+            before = frame;
         }
     };
     walk(&first, &mut (start..count));
     walk(&first, &mut (0..start).rev());
     Some(Scout { stride, states: states.into_iter().flatten().collect() })
+}
+
+/// A joint that was out of sight is not where it was held, and from there the way to its markers may end elsewhere. The guess
+/// that explains the frame best is taken, if it does so better than the pose.
+fn find_again(
+    solver: &mut FrameSolver<'_>,
+    state: &mut State,
+    seen: &[Seen],
+    ties: &Ties<'_>,
+    guesses: impl IntoIterator<Item = State>,
+) -> Option<Fit> {
+    let mut best = solver.cost(state, seen, ties);
+    let mut found = None;
+    for mut guess in guesses {
+        let fit = solver.solve(&mut guess, seen, ties, HARD_STEPS);
+        if fit.cost < best {
+            best = fit.cost;
+            *state = guess;
+            found = Some(fit);
+        }
+    }
+    found
+}
+
+/// A pose with the turns of some joints from another one.
+fn with_turns(state: &State, other: &State, joints: &[usize]) -> State {
+    let mut state = state.clone();
+    for &joint in joints {
+        state.turns[joint] = other.turns[joint];
+    }
+    state
 }
 
 /// Poses of every frame, and how they came out.
@@ -162,10 +210,22 @@ fn chunk(
             fit = solver.solve(&mut state, sight.at(frame), &ties, HARD_STEPS);
             fit.iterations += params.iterations;
         }
+        let returned: Vec<usize> = match frame.checked_sub(1) {
+            Some(before) => sight.newly_shown(frame, before).collect(),
+            None => Vec::new(),
+        };
+        if !returned.is_empty() {
+            let scouted = frame.div_ceil(scout.stride).min(scout.states.len() - 1);
+            let guess = with_turns(&state, &scout.states[scouted], &returned);
+            let found = find_again(&mut solver, &mut state, sight.at(frame), &ties, [guess]);
+            fit = found.unwrap_or(fit);
+        }
         if frame >= frames.start {
             solved.push((state.clone(), fit));
         }
-        last = Some(std::mem::replace(&mut before, state));
+        let passed = std::mem::replace(&mut before, state);
+        // From where a joint was held to where it is found is no movement to go on with.
+        last = returned.is_empty().then_some(passed);
     }
     solved
 }

@@ -149,6 +149,12 @@ impl Tree {
         add(held, scale(share, sub(pulled, held)))
     }
 
+    /// The joints that move a marker, from the one nearest to it up to the root.
+    pub(crate) fn movers(&self, anchor: &Anchor) -> impl Iterator<Item = usize> + '_ {
+        let above = |&joint: &usize| (joint > 0).then(|| self.parents[joint]);
+        std::iter::successors(Some(anchor.far.map_or(anchor.near, |(far, _)| far)), above)
+    }
+
     /// The pose of the whole skeleton.
     pub(crate) fn pose(&self, state: &State, skeleton: &Skeleton) -> Pose {
         let mut pose = Pose::rest(skeleton);

@@ -6,7 +6,9 @@ mod properties;
 
 use std::ops::ControlFlow;
 
-use gapfill::{Bones, Borders, BuildError, Coordinates, DEFAULT, Joined, METHODS, Options, build};
+use gapfill::{
+    Body, Bones, Borders, BuildError, Coordinates, DEFAULT, Joined, METHODS, Options, build,
+};
 use mocap_core::{
     Estimates, FillError, FillReport, Filled, GapFiller, IterReport, MarkerKnowledge, MarkerSet,
     Take, Termination, geometry::distance,
@@ -17,7 +19,8 @@ use proptest::prelude::*;
 
 #[test]
 fn every_method_conforms() {
-    let options = Options { iterations: Some(5), ..Options::default() };
+    let bodies = vec![segments(["A0", "A1", "A2", "A3", "B0", "B1", "B2", "B3"])];
+    let options = Options { iterations: Some(5), bodies, ..Options::default() };
     for method in METHODS {
         let filler = build(method.id, &options).unwrap();
         conformance(filler.as_ref(), &Claims::default());
@@ -68,6 +71,7 @@ fn methods_read_the_options_they_name() {
         borders: Some(Borders::Join),
         known: known.clone(),
         bones: Bones::Auto(known),
+        bodies: vec![segments(["p0", "p1", "p2", "p3", "p4", "p5", "p6", "p7"])],
         ..plain
     };
     let changes = [
@@ -87,6 +91,18 @@ fn methods_read_the_options_they_name() {
             assert_eq!(usual.bit_eq(&changed), !reads, "{} and `{name}`", method.id);
         }
     }
+}
+
+/// The two segments of the articulated take, with these markers.
+fn segments(names: [&str; 8]) -> Body {
+    let places = ["0.05 0.04 -0.05", "-0.05 0.03 -0.15", "0.04 -0.05 -0.28", "-0.03 -0.04 -0.40"];
+    let marker = |(m, name): (usize, &&str)| {
+        let segment = if m < 4 { "upper" } else { "lower" };
+        format!("marker {name} {segment} {}", places[m % 4])
+    };
+    let markers: Vec<String> = names.iter().enumerate().map(marker).collect();
+    let text = format!("joint upper\njoint lower upper 0 0 -0.45\n{}", markers.join("\n"));
+    Body::parse(&text, "segments").unwrap()
 }
 
 fn fill(id: &str, options: &Options, take: &Take) -> Take {

@@ -109,5 +109,5 @@ fn whole_limbs_of_real_takes_are_filled_better_than_by_straight_lines() {
     }
     let mean = sums.map(|sum| 1e3 * sum / f64::from(trials.max(1)));
     println!("{trials} trials: {:.1} mm, lines {:.1} mm on average", mean[0], mean[1]);
-    assert!(trials == 0 || sums[0] < 0.8 * sums[1], "{sums:?}");
+    assert!(trials == 0 || sums[0] < 0.4 * sums[1], "{sums:?}");
 }

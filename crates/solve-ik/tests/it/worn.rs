@@ -28,12 +28,21 @@ pub fn record(motion: Activity, frames: usize, seed: u64) -> SyntheticTake {
     Synth::new(params).unwrap().take().unwrap()
 }
 
-/// The true layout on the bones of another body.
+/// The true layout on the mean bones of many other bodies.
 pub fn synthetic_body() -> Body {
-    let other = record(Activity::Walk, 1, 987);
-    let joints = other.motion().skeleton().joints();
+    const BODIES: u64 = 40;
+    let others: Vec<SyntheticTake> =
+        (0..BODIES).map(|seed| record(Activity::Walk, 1, 900 + seed)).collect();
+    let mut joints = others[0].motion().skeleton().joints().to_vec();
+    for (j, joint) in joints.iter_mut().enumerate() {
+        joint.offset_m = std::array::from_fn(|a| {
+            let sum: f64 =
+                others.iter().map(|o| o.motion().skeleton().joints()[j].offset_m[a]).sum();
+            sum / BODIES as f64
+        });
+    }
     let mut text = String::from("name synthetic body\n");
-    for joint in joints {
+    for joint in &joints {
         let [x, y, z] = joint.offset_m;
         match joint.parent {
             None => {
