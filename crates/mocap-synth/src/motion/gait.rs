@@ -110,12 +110,14 @@ pub(crate) const RUN: Style = Style {
 };
 
 impl Style {
-    /// The same gait as people of the CMU database go: brisker, the knee bent more in the swing.
+    /// The same gait as people of the CMU database go: brisker, with a longer swing in which the knee
+    /// bends more.
     pub(crate) fn of_people(&self) -> Self {
         Self {
             cycles_hz: 1.02 * self.cycles_hz,
             stride: 1.05 * self.stride,
-            lift: 1.25 * self.lift,
+            stance: 0.955 * self.stance,
+            lift: 1.5 * self.lift,
             crouch: 0.9 * self.crouch,
             ..*self
         }

@@ -78,7 +78,7 @@ impl Throw {
         // A take begins somewhere in a throw, never on a fixed pose.
         let mut time = -LEAD_S - dice.uniform(0.0, 2.5);
         while time < seconds + LEAD_S {
-            let cast = Cast::sample(time, size, dice);
+            let cast = Cast::sample(time, size, body.surface, dice);
             time = cast.end;
             throw.throws.push(cast);
         }
@@ -87,9 +87,11 @@ impl Throw {
 }
 
 impl Cast {
-    fn sample(start: f64, size: f64, dice: &mut Dice) -> Self {
-        let rest = dice.uniform(0.1, 0.7);
-        let pace = dice.around(1.0, 0.07);
+    /// People wait less between throws than the template does, and throw faster.
+    fn sample(start: f64, size: f64, of_person: bool, dice: &mut Dice) -> Self {
+        let [wait, hurry] = if of_person { [0.3, 0.86] } else { [1.0, 1.0] };
+        let rest = wait * dice.uniform(0.1, 0.7);
+        let pace = hurry * dice.around(1.0, 0.07);
         let mut time = start + rest;
         let vigour: [f64; CHANNELS] = std::array::from_fn(|_| dice.around(1.0, 0.06));
         let mut keys = vec![(start, Self::values(0, size, &vigour))];
