@@ -15,21 +15,40 @@ use ndarray::Array3;
 const MARKERS: usize = 41;
 const ITERATIONS: usize = 20;
 
-/// What cameras add; without it the last hidden dimensions would have nothing to learn.
-const NOISE_M: f64 = 0.000_5;
+/// Ways to move that the bones share.
+const WAYS: usize = 8;
 
-/// Markers on a chain that sways, and the bones along it.
+/// Markers on a chain of bones that is bent at random, seen with half a millimetre of noise.
 fn take(frames: usize) -> (Take, BoneSet) {
-    let positions = Array3::from_shape_fn((frames, MARKERS, 3), |(t, m, a)| {
-        let noise = NOISE_M
-            * (2.0 * (1e4 * ((t * MARKERS + m) as f64 + a as f64 / 3.0).sin()).rem_euclid(1.0)
-                - 1.0);
-        let (t, m, a) = (t as f64 / 120.0, m as f64, a as f64);
-        noise
-            + 0.05 * m
-            + 0.3 * (5.0 * t + 0.2 * m + a).sin()
-            + 0.1 * (9.0 * t + 0.3 * m * (a + 1.0)).cos()
-    });
+    let mut count = 0.0_f64;
+    // Even noise between −1 and 1 that needs no generator.
+    let mut noise = move || {
+        count += 1.0;
+        2.0 * (1e4 * (12.989_8 * count).sin()).rem_euclid(1.0) - 1.0
+    };
+    let mut ways = [0.0; WAYS];
+    let mut paces = [0.0; WAYS];
+    let shares = [(); 2 * MARKERS * WAYS].map(|()| noise());
+    let mut positions = Array3::zeros((frames, MARKERS, 3));
+    for t in 0..frames {
+        for (way, pace) in ways.iter_mut().zip(&mut paces) {
+            *pace = 0.95 * *pace + 0.005 * noise();
+            *way = 0.99 * *way + *pace;
+        }
+        let mut place = [ways[0], ways[1], ways[2]];
+        for m in 0..MARKERS {
+            let angle = |which: usize| {
+                let shares = shares[(2 * m + which) * WAYS..].iter();
+                1.0 + m as f64 + shares.zip(&ways).map(|(share, way)| share * way).sum::<f64>()
+            };
+            let (tilt, turn) = (angle(0), angle(1));
+            let bone = [tilt.sin() * turn.cos(), tilt.sin() * turn.sin(), tilt.cos()];
+            for a in 0..3 {
+                place[a] += 0.1 * bone[a];
+                positions[(t, m, a)] = place[a] + 0.000_5 * noise();
+            }
+        }
+    }
     let names = MarkerSet::new((0..MARKERS).map(|m| format!("M{m}"))).unwrap();
     let truth = Take::from_positions(names, 120.0, positions).unwrap();
     let pairs = (1..MARKERS).map(|m| (m - 1, m)).collect();

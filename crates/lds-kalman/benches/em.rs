@@ -14,26 +14,28 @@ use ndarray::Array2;
 const DIMENSIONS: usize = 123;
 const ITERATIONS: usize = 20;
 
-/// What cameras add. Without it the last hidden dimensions would have nothing to learn, and numbers too
-/// small for the processor's fast paths.
-const NOISE_M: f64 = 0.000_5;
+/// Ways to move that the dimensions share, more than the hidden ones, each weaker than the last.
+const WAYS: usize = 24;
 
-/// A rhythm that all dimensions share, each at its own phase.
-fn wave(k: f64, t: f64, j: f64) -> f64 {
-    0.5 / (k * k) * (3.1 * k * t + (0.3 + 0.1 * k) * j + 0.01 * k * j * j).sin()
-}
-
-/// Even noise between −1 and 1 that needs no generator.
-fn noise(i: f64) -> f64 {
-    2.0 * (1e4 * (12.989_8 * i).sin()).rem_euclid(1.0) - 1.0
-}
-
+/// Places that are pushed about at random, seen through fixed directions with half a millimetre of noise. A
+/// periodic motion without noise would be learnt as one that never errs, and its covariances would settle late.
 fn observations(frames: usize) -> Observations {
-    let values = Array2::from_shape_fn((frames, DIMENSIONS), |(t, j)| {
-        let (t, j) = (t as f64 / 120.0, j as f64);
-        let waves: f64 = (1..=8).map(|k| wave(f64::from(k), t, j)).sum();
-        waves + NOISE_M * noise(t * 120.0 * DIMENSIONS as f64 + j)
-    });
+    let mut count = 0.0_f64;
+    // Even noise between −1 and 1 that needs no generator.
+    let mut noise = move || {
+        count += 1.0;
+        2.0 * (1e4 * (12.989_8 * count).sin()).rem_euclid(1.0) - 1.0
+    };
+    let directions = Array2::from_shape_fn((WAYS, DIMENSIONS), |(k, _)| noise() / (1 + k) as f64);
+    let mut places = Array2::zeros((frames, WAYS));
+    for k in 0..WAYS {
+        let mut pace = 0.0;
+        for t in 1..frames {
+            pace = 0.95 * pace + 0.005 * noise();
+            places[(t, k)] = 0.99 * places[(t - 1, k)] + pace;
+        }
+    }
+    let values = places.dot(&directions).mapv(|x| x + 0.000_5 * noise());
     let gap = frames / 3..frames / 3 + frames * 3 / 10;
     let mask = Array2::from_shape_fn(values.dim(), |(t, j)| j / 3 != 17 || !gap.contains(&t));
     Observations::new(values.view(), mask.view()).unwrap()
