@@ -10,4 +10,4 @@ mod solver;
 
 pub use filler::BoleroHc;
 pub use hook::HardBones;
-pub use params::{BoleroHcParams, Bones};
+pub use params::BoleroHcParams;

@@ -1,38 +1,5 @@
 use lds_kalman::{EStep, filler::LdsFillerParams};
-use mocap_core::{BoneRule, BoneSet, FillError, MarkerKnowledge, Take};
-
-/// Where the bones come from.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Bones {
-    /// By this rule; lengths from the visible samples.
-    Estimated(BoneRule),
-    /// These, with these lengths.
-    Given(BoneSet),
-}
-
-impl Default for Bones {
-    /// The named pairs of the CMU marker set where a take wears it, else the pairs whose distance
-    /// hardly changes.
-    fn default() -> Self {
-        Self::Estimated(BoneRule::Known(vec![MarkerKnowledge::cmu_41()]))
-    }
-}
-
-impl Bones {
-    /// The bones of a take.
-    ///
-    /// # Errors
-    ///
-    /// [`FillError::Core`] for bones that name markers the take does not have.
-    pub fn find(&self, take: &Take) -> Result<BoneSet, FillError> {
-        let bones = match self {
-            Self::Given(bones) => bones.clone(),
-            Self::Estimated(rule) => BoneSet::estimate(take, rule)?,
-        };
-        bones.check(take)?;
-        Ok(bones)
-    }
-}
+use mocap_core::{BoneSource, FillError};
 
 /// How [`BoleroHc`](crate::BoleroHc) fills.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,14 +12,14 @@ pub struct BoleroHcParams {
     /// bones allow. Where EM ends earlier, the bones act in its last iteration.
     pub first_iteration: usize,
     /// Where the bones come from.
-    pub bones: Bones,
+    pub bones: BoneSource,
 }
 
 impl Default for BoleroHcParams {
     /// Exact EM from the data's own subspace.
     fn default() -> Self {
         let model = LdsFillerParams::default();
-        Self { model, first_iteration: 11, bones: Bones::default() }
+        Self { model, first_iteration: 11, bones: BoneSource::default() }
     }
 }
 

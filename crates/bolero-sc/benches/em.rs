@@ -6,10 +6,10 @@ use std::{
     time::{Duration, Instant},
 };
 
-use bolero_sc::{BoleroSc, BoleroScParams, Bones};
+use bolero_sc::{BoleroSc, BoleroScParams};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use lds_kalman::filler::{Coordinates, Hidden, LdsFillerParams};
-use mocap_core::{BoneRule, BoneSet, GapFiller, MarkerSet, Mask, Take};
+use mocap_core::{BoneRule, BoneSet, BoneSource, GapFiller, MarkerSet, Mask, Take};
 use ndarray::Array3;
 
 const MARKERS: usize = 41;
@@ -68,7 +68,7 @@ fn filler(bones: &BoneSet, lambda: f64) -> BoleroSc {
             ..LdsFillerParams::default()
         },
         lambda,
-        bones: Bones::Given(bones.clone()),
+        bones: BoneSource::Given(bones.clone()),
         ..BoleroScParams::default()
     })
     .unwrap()

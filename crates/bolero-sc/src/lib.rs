@@ -8,5 +8,5 @@ mod solver;
 
 pub use filler::BoleroSc;
 pub use hook::SoftBones;
-pub use params::{BoleroScParams, Bones, Untied};
+pub use params::{BoleroScParams, Untied};
 pub use solver::Solver;

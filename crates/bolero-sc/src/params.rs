@@ -1,45 +1,7 @@
 use lds_kalman::{EStep, filler::LdsFillerParams};
-use mocap_core::{BoneRule, BoneSet, FillError, MarkerKnowledge, RigidPairs, Take};
+use mocap_core::{BoneSource, FillError};
 
 use crate::solver::Solver;
-
-/// Where the bones come from.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub enum Bones {
-    /// The named pairs of the CMU marker set where a take has any of them, else the pairs whose
-    /// distance hardly changes; lengths from the visible samples.
-    #[default]
-    Auto,
-    /// By this rule; lengths from the visible samples.
-    Estimated(BoneRule),
-    /// These, with these lengths.
-    Given(BoneSet),
-}
-
-impl Bones {
-    /// The bones of a take.
-    ///
-    /// # Errors
-    ///
-    /// [`FillError::Core`] for bones that name markers the take does not have.
-    pub fn find(&self, take: &Take) -> Result<BoneSet, FillError> {
-        let bones = match self {
-            Self::Given(bones) => bones.clone(),
-            Self::Estimated(rule) => BoneSet::estimate(take, rule)?,
-            Self::Auto => {
-                let pairs = MarkerKnowledge::cmu_41().bone_pairs(take.markers());
-                let rule = if pairs.is_empty() {
-                    BoneRule::Rigid(RigidPairs::default())
-                } else {
-                    BoneRule::Pairs(pairs)
-                };
-                BoneSet::estimate(take, &rule)?
-            }
-        };
-        bones.check(take)?;
-        Ok(bones)
-    }
-}
 
 /// What becomes of fills that no bone ties to a visible marker, in frames that show fewer than six
 /// markers, where fills count as observed.
@@ -68,7 +30,7 @@ pub struct BoleroScParams {
     /// the noise variance in m², so it is measured in m⁻⁴.
     pub lambda: f64,
     /// Where the bones come from.
-    pub bones: Bones,
+    pub bones: BoneSource,
     /// What becomes of fills that rest on next to nothing.
     pub untied: Untied,
     /// How the missing markers of a frame are found.
@@ -81,7 +43,7 @@ impl Default for BoleroScParams {
         Self {
             model: LdsFillerParams::default(),
             lambda: 1e6,
-            bones: Bones::Auto,
+            bones: BoneSource::default(),
             untied: Untied::default(),
             solver: Solver::default(),
         }

@@ -1,4 +1,4 @@
-use mocap_core::{BoneRule, BoneSet, CoreError, MarkerKnowledge, Take};
+use mocap_core::{BoneRule, BoneSet, BoneSource, CoreError, MarkerKnowledge, Take};
 use solve_ik::Body;
 
 use crate::{Borders, Edges, Start};
@@ -77,13 +77,14 @@ impl Bones {
     /// # Errors
     /// [`CoreError`] for given bones that the take has no markers for.
     pub fn resolve(&self, take: &Take) -> Result<BoneSet, CoreError> {
+        self.source().find(take)
+    }
+
+    pub(crate) fn source(&self) -> BoneSource {
         match self {
-            Self::Auto(known) => BoneSet::estimate(take, &BoneRule::Known(known.clone())),
-            Self::None => Ok(BoneSet::default()),
-            Self::Given(bones) => {
-                bones.check(take)?;
-                Ok(bones.clone())
-            }
+            Self::Auto(known) => BoneSource::Estimated(BoneRule::Known(known.clone())),
+            Self::None => BoneSource::Given(BoneSet::default()),
+            Self::Given(bones) => BoneSource::Given(bones.clone()),
         }
     }
 }

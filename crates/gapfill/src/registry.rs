@@ -9,11 +9,11 @@ use bolero_sc::{BoleroSc, BoleroScParams};
 use edm_mds::Edm;
 use lds_kalman::filler::{self, LdsFiller, LdsFillerParams};
 use locality_ridge::LocalRidge;
-use mocap_core::{BoneRule, BoneSet, FillError, GapFiller, MarkerKnowledge, MarkerSet};
+use mocap_core::{FillError, GapFiller, MarkerKnowledge, MarkerSet};
 use solve_ik::{IkFiller, IkParams};
 use thiserror::Error;
 
-use crate::{Auto, AutoParams, Bones, Borders, Coordinates, Joined, Options};
+use crate::{Auto, AutoParams, Borders, Coordinates, Joined, Options};
 
 /// The method to take where the user names none.
 pub const DEFAULT: &str = "auto";
@@ -233,15 +233,10 @@ fn soft_bones(options: &Options) -> Result<Box<dyn GapFiller>, FillError> {
     } else {
         (BoleroScParams::default(), Borders::Join)
     };
-    let bones = match &options.bones {
-        Bones::Auto(known) => bolero_sc::Bones::Estimated(BoneRule::Known(known.clone())),
-        Bones::None => bolero_sc::Bones::Given(BoneSet::default()),
-        Bones::Given(bones) => bolero_sc::Bones::Given(bones.clone()),
-    };
     let filler = BoleroSc::new(BoleroScParams {
         model: model(defaults.model, options),
         lambda: options.lambda.unwrap_or(defaults.lambda),
-        bones,
+        bones: options.bones.source(),
         ..defaults
     })?;
     Ok(bordered(filler, options.borders.unwrap_or(borders)))
@@ -250,12 +245,8 @@ fn soft_bones(options: &Options) -> Result<Box<dyn GapFiller>, FillError> {
 fn hard_bones(options: &Options) -> Result<Box<dyn GapFiller>, FillError> {
     let own = BoleroHcParams::default();
     let defaults = if options.published { BoleroHcParams::published() } else { own };
-    let bones = match &options.bones {
-        Bones::Auto(known) => bolero_hc::Bones::Estimated(BoneRule::Known(known.clone())),
-        Bones::None => bolero_hc::Bones::Given(BoneSet::default()),
-        Bones::Given(bones) => bolero_hc::Bones::Given(bones.clone()),
-    };
     let model = model(defaults.model, options);
+    let bones = options.bones.source();
     let filler = BoleroHc::new(BoleroHcParams { model, bones, ..defaults })?;
     // Joining a fill at its borders would stretch the bones.
     Ok(bordered(filler, options.borders.unwrap_or(Borders::Keep)))

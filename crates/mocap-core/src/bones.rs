@@ -65,6 +65,39 @@ pub enum BoneRule {
     Known(Vec<MarkerKnowledge>),
 }
 
+/// Where a method that keeps bone lengths has its bones from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum BoneSource {
+    /// By this rule; lengths from the visible samples.
+    Estimated(BoneRule),
+    /// These, with these lengths.
+    Given(BoneSet),
+}
+
+impl Default for BoneSource {
+    /// The named pairs of the CMU marker set where a take wears it, else the pairs whose distance
+    /// hardly changes.
+    fn default() -> Self {
+        Self::Estimated(BoneRule::Known(vec![MarkerKnowledge::cmu_41()]))
+    }
+}
+
+impl BoneSource {
+    /// The bones of a take.
+    ///
+    /// # Errors
+    ///
+    /// [`CoreError`] for bones or rules that name markers the take does not have.
+    pub fn find(&self, take: &Take) -> Result<BoneSet, CoreError> {
+        let bones = match self {
+            Self::Given(bones) => bones.clone(),
+            Self::Estimated(rule) => BoneSet::estimate(take, rule)?,
+        };
+        bones.check(take)?;
+        Ok(bones)
+    }
+}
+
 /// Share of a marker set that a take has to wear for the set's bones to be believed.
 const WORN: f64 = 0.5;
 

@@ -22,7 +22,7 @@ mod take;
 
 pub use body_frame::{BodyFrame, BodyMarkers, UpAxis};
 pub use bone_report::{BoneReport, InfeasibleFrame};
-pub use bones::{Bone, BoneRule, BoneSet, RigidPairs};
+pub use bones::{Bone, BoneRule, BoneSet, BoneSource, RigidPairs};
 pub use error::CoreError;
 pub use filled::{CellState, Estimates, Filled};
 pub use filler::{

@@ -2,14 +2,14 @@
 
 use std::ops::ControlFlow;
 
-use bolero_hc::{BoleroHc, BoleroHcParams, Bones};
+use bolero_hc::{BoleroHc, BoleroHcParams};
 use lds_kalman::{
     EStep,
     filler::{LdsFiller, LdsFillerParams},
 };
 use mocap_core::{
-    Bone, BoneReport, BoneRule, BoneSet, CoreError, FillError, Filled, GapFiller, Mask, RigidPairs,
-    Take, Termination,
+    Bone, BoneReport, BoneRule, BoneSet, BoneSource, CoreError, FillError, Filled, GapFiller, Mask,
+    RigidPairs, Take, Termination,
 };
 use mocap_testkit::{Claims, articulated_take, conformance};
 use proptest::prelude::*;
@@ -43,15 +43,15 @@ fn with_gap(truth: &Take, markers: &[usize], frames: std::ops::Range<usize>) -> 
     truth.hide(&hidden).unwrap()
 }
 
-fn given(bones: &[(usize, usize, f64)]) -> Bones {
+fn given(bones: &[(usize, usize, f64)]) -> BoneSource {
     let bones = bones.iter().map(|&(a, b, d)| Bone::new(a, b, d).unwrap());
-    Bones::Given(BoneSet::new(bones).unwrap())
+    BoneSource::Given(BoneSet::new(bones).unwrap())
 }
 
 /// Two bones at each of the markers 2 and 3, and one between them: six unknown coordinates.
-fn hinge(truth: &Take) -> Bones {
+fn hinge(truth: &Take) -> BoneSource {
     let rule = BoneRule::Pairs(vec![(0, 2), (1, 2), (0, 3), (1, 3), (2, 3)]);
-    Bones::Given(BoneSet::estimate(truth, &rule).unwrap())
+    BoneSource::Given(BoneSet::estimate(truth, &rule).unwrap())
 }
 
 #[test]
@@ -206,7 +206,7 @@ fn bad_parameters_and_bones_are_refused() {
 #[test]
 fn unnamed_markers_get_their_bones_from_rigidity() {
     let take = with_gap(&articulated_take(100, 6), &[2, 3], 40..50);
-    let found = Bones::default().find(&take).unwrap();
+    let found = BoneSource::default().find(&take).unwrap();
     let rule = BoneRule::Rigid(RigidPairs::default());
     assert_eq!(found, BoneSet::estimate(&take, &rule).unwrap());
     assert!(found.touching(2).count() > 0);

@@ -2,9 +2,9 @@
 
 use std::time::Instant;
 
-use bolero_hc::{BoleroHc, BoleroHcParams, Bones};
+use bolero_hc::{BoleroHc, BoleroHcParams};
 use lds_kalman::filler::LdsFillerParams;
-use mocap_core::{BoneReport, GapFiller, Holdout};
+use mocap_core::{BoneReport, BoneSource, GapFiller, Holdout};
 use mocap_testkit::{hide, motion, mse, oracle_bones};
 
 fn knee_and_shin() -> Option<Holdout> {
@@ -19,7 +19,7 @@ fn elbow_and_forearm() -> Option<Holdout> {
 fn oracle(holdout: &Holdout, params: BoleroHcParams, iterations: usize) -> BoleroHcParams {
     BoleroHcParams {
         model: LdsFillerParams { iterations, tolerance: 0.0, seed: 1, ..params.model },
-        bones: Bones::Given(oracle_bones(holdout.truth())),
+        bones: BoneSource::Given(oracle_bones(holdout.truth())),
         ..params
     }
 }

@@ -1,9 +1,10 @@
 //! The filler against its contract and its claims.
 
-use bolero_sc::{BoleroSc, BoleroScParams, Bones, Solver};
+use bolero_sc::{BoleroSc, BoleroScParams, Solver};
 use lds_kalman::filler::{LdsFiller, LdsFillerParams};
 use mocap_core::{
-    Bone, BoneRule, BoneSet, CoreError, FillError, Filled, GapFiller, Mask, RigidPairs, Take,
+    Bone, BoneRule, BoneSet, BoneSource, CoreError, FillError, Filled, GapFiller, Mask, RigidPairs,
+    Take,
 };
 use mocap_testkit::{Claims, articulated_take, conformance};
 use proptest::prelude::*;
@@ -61,7 +62,10 @@ fn without_bones_it_is_the_plain_system() {
     let plain = LdsFiller::new(model).unwrap().fill(&take).unwrap();
     for params in [
         BoleroScParams { lambda: 0.0, ..BoleroScParams::default() },
-        BoleroScParams { bones: Bones::Given(BoneSet::default()), ..BoleroScParams::default() },
+        BoleroScParams {
+            bones: BoneSource::Given(BoneSet::default()),
+            ..BoleroScParams::default()
+        },
     ] {
         let filled = filler(params).fill(&take).unwrap();
         assert!(filled.take().bit_eq(plain.take()));
@@ -123,7 +127,7 @@ fn bad_parameters_and_bones_are_refused() {
     let error = BoleroSc::new(BoleroScParams { model, ..BoleroScParams::default() });
     assert!(matches!(error, Err(FillError::Parameter { field: "iterations", .. })));
     let stray = BoneSet::new([Bone::new(0, 99, 0.3).unwrap()]).unwrap();
-    let params = BoleroScParams { bones: Bones::Given(stray), ..BoleroScParams::default() };
+    let params = BoleroScParams { bones: BoneSource::Given(stray), ..BoleroScParams::default() };
     let error = filler(params).fill(&with_gap(&articulated_take(50, 1), 10..20)).unwrap_err();
     assert!(matches!(error, FillError::Core(CoreError::OutOfRange { marker: 99, .. })), "{error}");
 }
@@ -136,7 +140,7 @@ fn contradicting_bones_end_in_a_compromise() {
         Bone::new(2, 3, 5.0).unwrap(),
     ])
     .unwrap();
-    let params = BoleroScParams { bones: Bones::Given(bones), ..BoleroScParams::default() };
+    let params = BoleroScParams { bones: BoneSource::Given(bones), ..BoleroScParams::default() };
     let filled = filler(params).fill(&with_gap(&articulated_take(60, 2), 20..30)).unwrap();
     assert!(filled.report().refusals.is_empty());
 }
@@ -144,7 +148,7 @@ fn contradicting_bones_end_in_a_compromise() {
 #[test]
 fn unnamed_markers_get_their_bones_from_rigidity() {
     let take = with_gap(&articulated_take(100, 6), 40..50);
-    let found = Bones::Auto.find(&take).unwrap();
+    let found = BoneSource::default().find(&take).unwrap();
     let rule = BoneRule::Rigid(RigidPairs::default());
     assert_eq!(found, BoneSet::estimate(&take, &rule).unwrap());
     assert!(found.touching(2).count() > 0);

@@ -1,11 +1,11 @@
 //! Reconstruction of the paper's motions.
 
-use bolero_sc::{BoleroSc, BoleroScParams, Bones};
+use bolero_sc::{BoleroSc, BoleroScParams};
 use lds_kalman::{
     EStep,
     filler::{LdsFiller, LdsFillerParams},
 };
-use mocap_core::{GapFiller, Holdout};
+use mocap_core::{BoneSource, GapFiller, Holdout};
 use mocap_testkit::{hide, motion, mse, ninety_trials, oracle_bones};
 use rayon::prelude::*;
 
@@ -21,7 +21,7 @@ fn elbow_and_forearm() -> Option<Holdout> {
 fn published(holdout: &Holdout, iterations: usize) -> BoleroSc {
     let mut params = BoleroScParams::published();
     params.model = LdsFillerParams { iterations, tolerance: 0.0, seed: 1, ..params.model };
-    params.bones = Bones::Given(oracle_bones(holdout.truth()));
+    params.bones = BoneSource::Given(oracle_bones(holdout.truth()));
     BoleroSc::new(params).unwrap()
 }
 
