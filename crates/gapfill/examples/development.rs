@@ -5,7 +5,8 @@
 //! ```
 //!
 //! The first word names the takes: `tuning` for choosing, `checking` for what was chosen, `ninety` for the list of
-//! [Li10]. The second names methods; the third, if given, keeps the classes that contain it.
+//! [Li10]. The second names methods; the third, if given, keeps the classes that contain it, and the fourth the takes
+//! whose path does.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a tool for developers")]
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "frame numbers")]
 
@@ -55,7 +56,7 @@ fn main() {
         let ninety = ninety_trials().unwrap();
         ninety.into_iter().map(|holdout| ("ninety".to_owned(), holdout)).collect()
     } else {
-        development(which == "tuning")
+        development(which == "tuning", arguments.get(3).map_or("", String::as_str))
     };
     for method in methods.split(',') {
         let filler = build(method, &Options::default()).unwrap();
@@ -155,11 +156,11 @@ fn print(method: &str, class: &str, scores: &[Score]) {
 }
 
 /// Trials on the takes for choosing or for checking.
-fn development(choosing: bool) -> Vec<(String, Holdout)> {
+fn development(choosing: bool, only: &str) -> Vec<(String, Holdout)> {
     let folder = std::env::var("MOCAP_DATA").unwrap();
     let mut trials = Vec::new();
     for (k, (path, frames, tuning)) in TAKES.iter().enumerate() {
-        if *tuning != choosing {
+        if *tuning != choosing || !path.contains(only) {
             continue;
         }
         let file =

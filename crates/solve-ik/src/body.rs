@@ -1,8 +1,8 @@
 use std::{collections::HashMap, sync::Arc};
 
 use mocap_core::{
-    MarkerSet, Skeleton,
-    geometry::{add, cross, dot, norm, scale, sub},
+    JointFrames, MarkerSet, Motion, Skeleton, Take,
+    geometry::{add, cross, distance, dot, norm, scale, sub},
 };
 
 use crate::IkError;
@@ -145,6 +145,46 @@ impl Body {
         let habits = habits.collect();
         let body = Self { skeleton, habits, sites, bone_spread: 0.0, ..self };
         body.check()?;
+        Ok(body)
+    }
+
+    /// The body as a solved motion of its wearer shows it: on the motion's skeleton, with each marker at its mean place on the
+    /// joint that carries it. Spreads become what the places really vary by, 1 mm at least. Markers that the take
+    /// does not show keep their places.
+    ///
+    /// The motion may come from another program, such as an ASF/AMC file; one take with it makes a template for the others of
+    /// the session. It must stand in the take's axes.
+    ///
+    /// # Errors
+    /// [`IkError::NoSuchJoint`] for a marker whose joint the skeleton lacks, [`IkError::Frames`] for a motion of another
+    /// length than the take, [`IkError::TwoLabels`], and [`IkError::Core`].
+    pub fn worn(self, take: &Take, motion: &Motion) -> Result<Self, IkError> {
+        let (frames, poses) = (take.frames(), motion.poses().len());
+        if frames != poses {
+            return Err(IkError::Frames { frames, poses });
+        }
+        let mut body = self.on(Arc::clone(motion.skeleton()))?;
+        let columns = body.columns(take.markers())?;
+        let joints = motion.poses().iter().map(|pose| motion.skeleton().frames(pose));
+        let joints = joints.collect::<Result<Vec<JointFrames>, _>>()?;
+        for (site, column) in body.sites.iter_mut().zip(columns) {
+            let Some(column) = column else { continue };
+            let local = |(t, frames): (usize, &JointFrames)| {
+                let off = sub(take.position(t, column)?, frames.origins_m[site.near]);
+                Some(frames.rotations[site.near].inverse().apply(off))
+            };
+            let places: Vec<[f64; 3]> = joints.iter().enumerate().filter_map(local).collect();
+            if places.is_empty() {
+                continue;
+            }
+            let share = 1.0 / places.len() as f64;
+            let mean = scale(share, places.iter().copied().fold([0.0; 3], add));
+            let square: f64 = places.iter().map(|p| distance(*p, mean).powi(2)).sum();
+            site.place = mean;
+            site.spread = (share * square / 3.0).sqrt().max(0.001);
+            // The mean is of the first joint alone.
+            site.far = None;
+        }
         Ok(body)
     }
 

@@ -90,6 +90,17 @@ pub enum IkError {
     /// No body to solve for.
     #[error("no body is given; name one, such as the built-in `cmu-41`")]
     NoBody,
+    /// A motion that is not of the take.
+    #[error(
+        "the motion has {poses} frames and the take {frames}; a body is learnt from a take and the motion \
+         of the same frames"
+    )]
+    Frames {
+        /// Frames of the take.
+        frames: usize,
+        /// Frames of the motion.
+        poses: usize,
+    },
     /// A take without frames.
     #[error("the take has no frame; there is nothing to solve")]
     NoFrames,
