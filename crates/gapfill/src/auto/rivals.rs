@@ -115,7 +115,9 @@ impl Group {
     fn new<'a>(take: &Take, gaps: Vec<Gap>, stock: &dyn Fn(&Gap) -> Option<&'a Stock>) -> Self {
         let mut group = Self { gaps, pseudo_gaps: Vec::new(), scored: Vec::new(), stocks: None };
         let missing = group.missing(take);
-        let all_seen = |t: usize| missing.iter().all(|&m| take.is_observed(t, m));
+        // What a pseudo-gap hides beyond the take is not there.
+        let all_seen =
+            |t: usize| t >= take.frames() || missing.iter().all(|&m| take.is_observed(t, m));
         let length = group.gaps[0].len();
         let most = (take.frames() / (HIDDEN * length)).clamp(4, MOST);
         let stocks: Option<Vec<&Stock>> = group.gaps.iter().map(stock).collect();
@@ -194,7 +196,11 @@ impl Group {
         let weights = if alike {
             stack::weights_together(&candidates, &credit)
         } else {
-            candidates.iter().map(|of| stack::weights(of)).collect()
+            let alone = |of: &Vec<Candidate>| {
+                let credit = vec![1.0; of.len()];
+                stack::weights_together(std::slice::from_ref(of), &credit).remove(0)
+            };
+            candidates.iter().map(alone).collect()
         };
         let pseudo_gaps: Vec<PseudoGap> =
             self.pseudo_gaps.iter().map(|(_, gap)| gap.clone()).collect();

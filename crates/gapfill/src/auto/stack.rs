@@ -1,6 +1,7 @@
 //! Weights of candidates from their errors in pseudo-gaps.
 
 use locality_ridge::ensemble::Candidate;
+use mocap_core::geometry::{dot, sub};
 
 /// Before they are adjusted, weights go with the mean square error to the power of minus this.
 pub(super) const SHARPNESS: f64 = 2.0;
@@ -13,6 +14,9 @@ const STEPS: usize = 60;
 
 /// How much the errors of markers that are missing together count beside a marker's own.
 const TOGETHER: f64 = 5.0;
+
+/// A candidate strays that is farther from the best one than in pseudo-gaps by more than this, in mean square.
+const STRAYS: f64 = 2.0;
 
 /// Weights of sum 1, none of them negative: those that make the mean square error of the mixture in the
 /// pseudo-gaps least, held by their relative entropy to weights from each candidate's own error.
@@ -30,7 +34,7 @@ pub(super) fn weights_together(markers: &[Vec<Candidate>], credit: &[f64]) -> Ve
     let scaled: Vec<Vec<f64>> = markers
         .iter()
         .map(|candidates| {
-            let products = products(candidates);
+            let products = strayed(candidates, products(candidates));
             let least = (0..n).map(|k| products[k * n + k]).fold(f64::INFINITY, f64::min);
             products.iter().map(|p| p / (least + 1e-18)).collect()
         })
@@ -73,6 +77,26 @@ fn of_products(products: &[f64], credit: &[f64]) -> Vec<f64> {
         }
     }
     weights
+}
+
+/// Products of errors, larger for candidates that are farther from the best one in the gap than in pseudo-gaps: a curve
+/// that overshoots in a long gap must not be judged by shorter ones.
+fn strayed(candidates: &[Candidate], mut products: Vec<f64>) -> Vec<f64> {
+    let n = candidates.len();
+    let by_error = |a: &usize, b: &usize| products[a * n + a].total_cmp(&products[b * n + b]);
+    let Some(best) = (0..n).min_by(by_error) else { return products };
+    let factor = |k: usize| {
+        let apart = products[k * n + k] + products[best * n + best] - 2.0 * products[k * n + best];
+        let pairs = candidates[k].positions.iter().zip(&candidates[best].positions);
+        let square: f64 = pairs.map(|(&p, &q)| dot(sub(p, q), sub(p, q))).sum();
+        let here = square / candidates[k].positions.len().max(1) as f64;
+        (here / (apart + 1e-18) / STRAYS).sqrt().max(1.0)
+    };
+    let factors: Vec<f64> = (0..n).map(|k| if k == best { 1.0 } else { factor(k) }).collect();
+    for (k, product) in products.iter_mut().enumerate() {
+        *product *= factors[k / n] * factors[k % n];
+    }
+    products
 }
 
 /// Mean products of the errors of two candidates, `(n, n)` in m²: each pseudo-gap counts alike.

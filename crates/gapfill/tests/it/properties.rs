@@ -87,6 +87,27 @@ proptest! {
         prop_assert!(difference < 1e-8, "{difference}");
     }
 
+    /// Any pattern of visibility gives finite samples or refusals, never a panic, and leaves what was observed.
+    #[test]
+    fn any_mask_is_accounted_for(seed in 0..1000_u64, share in 0.1..0.8_f64, run in 3..40_usize) {
+        let hash = |t: usize, m: usize| {
+            let hash = (seed + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15)
+                ^ ((t / run * 8 + m) as u64).wrapping_mul(0xC2B2_AE3D_27D4_EB4F);
+            ((hash ^ hash >> 29).wrapping_mul(0xBF58_476D_1CE4_E5B9) >> 40) as f64
+                / f64::from(1 << 24)
+        };
+        let truth = articulated_take(120, seed);
+        let take = truth.hide(&Mask::from_fn(120, 8, |t, m| hash(t, m) < share)).unwrap();
+        prop_assume!(take.observed().count() > 0);
+        let filled = fill(&take);
+        for gap in take.gaps() {
+            let refused = filled.report().refusals.iter().any(|r| r.gap == gap);
+            for t in gap.frames.clone() {
+                prop_assert!(filled.take().is_observed(t, gap.marker) != refused);
+            }
+        }
+    }
+
     #[test]
     fn observed_samples_stay_bit_for_bit(seed in 0..1000_u64) {
         let take = gapped(seed).visible().clone();
