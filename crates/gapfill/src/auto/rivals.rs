@@ -3,7 +3,10 @@
 use std::collections::BTreeMap;
 
 use locality_ridge::ensemble::{self, Candidate, PseudoGap, Sides};
-use mocap_core::{CellState, Filled, Gap, GapFiller, Mask, Take, geometry::sub};
+use mocap_core::{
+    CellState, Filled, Gap, GapFiller, Mask, Take,
+    geometry::{add, distance, scale, sub},
+};
 
 use super::{
     mixture::{Mixture, Stock, Tried},
@@ -24,6 +27,9 @@ const SEEDS: usize = 5;
 
 /// The candidates of another fill are of one kind; before errors are known they count as much as so many rivals.
 const KIN: f64 = 3.0;
+
+/// How many times as far from its mean place as it was seen a marker may be.
+const REACH: f64 = 3.0;
 
 /// A method that fills whole takes.
 pub(super) struct Rival {
@@ -155,7 +161,8 @@ impl Group {
         (0..take.marker_count()).filter(missing).collect()
     }
 
-    /// What a rival made of a gap and its pseudo-gaps, by pass; `None` where it left some of them open.
+    /// What a rival made of a gap and its pseudo-gaps, by pass; `None` where it left some of them open, or went where
+    /// the marker cannot be.
     fn candidate(
         &self,
         take: &Take,
@@ -173,9 +180,11 @@ impl Group {
         let errors = |((pass, _), frames): (&(usize, PseudoGap), &Vec<usize>)| {
             frames.iter().map(|&t| error(*pass, t)).collect::<Option<Vec<_>>>()
         };
+        let positions = gap.frames.clone().map(|t| found(0, t)).collect::<Option<Vec<_>>>()?;
+        within_reach(take, gap.marker, &positions).then_some(())?;
         Some(Candidate {
             name,
-            positions: gap.frames.clone().map(|t| found(0, t)).collect::<Option<_>>()?,
+            positions,
             errors: self.pseudo_gaps.iter().zip(&self.scored).map(errors).collect::<Option<_>>()?,
         })
     }
@@ -215,6 +224,16 @@ impl Group {
         };
         self.gaps.iter().zip(&candidates).zip(weights).filter_map(answer).collect()
     }
+}
+
+/// Whether a marker stays where it can be: within thrice the distance from its mean place that it was seen at, and a
+/// metre. Curves and models of motion may leave for kilometres where they were given little.
+fn within_reach(take: &Take, marker: usize, positions: &[[f64; 3]]) -> bool {
+    let seen: Vec<[f64; 3]> = (0..take.frames()).filter_map(|t| take.position(t, marker)).collect();
+    let share = 1.0 / seen.len().max(1) as f64;
+    let centre = seen.iter().fold([0.0; 3], |sum, &p| add(sum, scale(share, p)));
+    let farthest = seen.iter().map(|&p| distance(p, centre)).fold(0.0, f64::max);
+    positions.iter().all(|&p| distance(p, centre) <= REACH * farthest + 1.0)
 }
 
 /// Whether all were tried on the same frames.
