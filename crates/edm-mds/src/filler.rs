@@ -26,8 +26,8 @@ use crate::{EdmParams, gap::MarkerFiller};
 /// paper says nothing, and weights.
 ///
 /// # Cost
-/// Linear in the frames: distances to all markers for each marker that has gaps, then one small
-/// eigenproblem a missing sample.
+/// Linear in the frames: distances to all markers for each marker that has gaps, then a few
+/// thousand operations a missing sample.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Edm {
     params: EdmParams,

@@ -2,9 +2,9 @@
 
 mod filler;
 mod gap;
+mod moments;
 mod neighbours;
 mod params;
-mod procrustes;
 mod scaling;
 mod solve;
 mod trilateration;

@@ -1,6 +1,7 @@
 //! Which markers to measure distances to.
 
-use mocap_core::Take;
+use mocap_core::{Take, geometry::distance};
+use ndarray::Axis;
 
 use crate::EdmParams;
 
@@ -23,11 +24,13 @@ pub(crate) struct Neighbour {
 ///
 /// Implements the choice of neighbours of [Pan23] §3.1.
 pub(crate) fn rank(take: &Take, target: usize, min_shared: usize) -> Vec<Neighbour> {
-    let mut found: Vec<(Neighbour, f64)> = (0..take.marker_count())
-        .filter(|&m| m != target)
-        .filter_map(|marker| {
-            let (variance, mean) = distance_moments(take, target, marker, min_shared)?;
-            Some((Neighbour { marker, variance: variance.max(CONSTANT_M2) }, mean))
+    let moments = distance_moments(take, target);
+    let mut found: Vec<(Neighbour, f64)> = (0..)
+        .zip(&moments)
+        .filter(|&(m, moments)| m != target && moments.frames >= min_shared.max(1))
+        .map(|(marker, moments)| {
+            let variance = moments.variance().max(CONSTANT_M2);
+            (Neighbour { marker, variance }, moments.mean())
         })
         .collect();
     found.sort_by(|(a, near), (b, far)| {
@@ -37,35 +40,71 @@ pub(crate) fn rank(take: &Take, target: usize, min_shared: usize) -> Vec<Neighbo
     found.into_iter().map(|(neighbour, _)| neighbour).collect()
 }
 
-/// Variance and mean of the distance over the frames that show both markers.
-fn distance_moments(take: &Take, a: usize, b: usize, least: usize) -> Option<(f64, f64)> {
-    let mut first = None;
-    let (mut n, mut sum, mut squares) = (0_usize, 0.0, 0.0);
-    for d in (0..take.frames()).filter_map(|t| take.distance(t, a, b)) {
-        // Around the first distance, so that no digits are lost where they hardly vary.
-        let x = d - *first.get_or_insert(d);
-        n += 1;
-        sum += x;
-        squares += x * x;
+/// Sums over the frames that show two markers, of their distance less that in the first such frame, so
+/// that no digits are lost where it hardly varies.
+#[derive(Debug, Clone, Copy, Default)]
+struct Moments {
+    first: f64,
+    frames: usize,
+    sum: f64,
+    squares: f64,
+}
+
+impl Moments {
+    fn add(&mut self, distance: f64) {
+        if self.frames == 0 {
+            self.first = distance;
+        }
+        let x = distance - self.first;
+        self.frames += 1;
+        self.sum += x;
+        self.squares += x * x;
     }
-    let mean = sum / n as f64;
-    (n >= least.max(1)).then(|| (squares / n as f64 - mean * mean, first.unwrap_or(0.0) + mean))
+
+    fn mean(&self) -> f64 {
+        self.first + self.sum / self.frames as f64
+    }
+
+    fn variance(&self) -> f64 {
+        let mean = self.sum / self.frames as f64;
+        self.squares / self.frames as f64 - mean * mean
+    }
+}
+
+/// Of the distances of each marker to `target`; frame by frame, as positions lie in memory.
+fn distance_moments(take: &Take, target: usize) -> Vec<Moments> {
+    let mut moments = vec![Moments::default(); take.marker_count()];
+    let positions = take.positions();
+    for (t, &seen) in take.observed().marker(target).iter().enumerate() {
+        if !seen {
+            continue;
+        }
+        let frame = positions.index_axis_move(Axis(0), t);
+        let (points, _) = frame.to_slice().unwrap_or_default().as_chunks::<3>();
+        for (moments, &point) in moments.iter_mut().zip(points) {
+            let distance = distance(point, points[target]);
+            // Missing markers have NaN for a position.
+            if !distance.is_nan() {
+                moments.add(distance);
+            }
+        }
+    }
+    moments
 }
 
 /// The neighbours to use of those in order of rank that pass `seen`: at most K, and beyond the third
 /// none that spreads too far.
-pub(crate) fn choose(
-    ranking: &[Neighbour],
-    params: &EdmParams,
-    seen: impl Fn(usize) -> bool,
-) -> Vec<Neighbour> {
+pub(crate) fn choose<'a>(
+    ranking: &'a [Neighbour],
+    params: &'a EdmParams,
+    seen: impl Fn(usize) -> bool + 'a,
+) -> impl Iterator<Item = Neighbour> + 'a {
     let limit = params.max_spread_m * params.max_spread_m;
     ranking
         .iter()
-        .filter(|n| seen(n.marker))
+        .filter(move |n| seen(n.marker))
         .take(params.neighbours)
         .enumerate()
-        .take_while(|(rank, n)| *rank < LEAST || n.variance <= limit)
+        .take_while(move |(rank, n)| *rank < LEAST || n.variance <= limit)
         .map(|(_, n)| *n)
-        .collect()
 }

@@ -1,11 +1,12 @@
-//! One frame: a position from interpolated distances.
+//! A position from interpolated distances.
 
-use mocap_core::geometry::{add, distance, scale, sub};
+use mocap_core::geometry::{add, best_rotation, distance, scale, sub};
 
 use crate::{
     EdmSolver,
-    procrustes::{Fit, centre, extents, squared},
-    scaling::classical_scaling,
+    moments::{centre, extents, products},
+    params::MAX_NEIGHBOURS,
+    scaling::Between,
     trilateration::trilaterate,
 };
 
@@ -13,80 +14,101 @@ use crate::{
 /// third is below this share of the second lie in a plane.
 const DEGENERATE: f64 = 0.05;
 
-/// A border of the gap: the marker's position there, and its neighbours'.
-#[derive(Debug, Clone)]
-pub(crate) struct Pose {
-    pub marker: [f64; 3],
-    pub neighbours: Vec<[f64; 3]>,
+/// Two borders of a gap as its frames need them; a gap that has one border has it twice.
+pub(crate) struct Borders {
+    poses: [Pose; 2],
+    between: Between,
+    weights: Vec<f64>,
 }
 
-/// What a frame's position is found from.
-pub(crate) struct Setting<'a> {
-    /// Borders with their shares, which sum to one.
-    pub borders: &'a [(f64, &'a Pose)],
-    /// The neighbours in this frame.
-    pub neighbours: &'a [[f64; 3]],
-    pub weights: &'a [f64],
+/// A border: the marker and its neighbours there.
+struct Pose {
+    /// The marker about the weighted mean of its neighbours.
+    marker: [f64; 3],
+    /// The neighbours about it, times their weights.
+    neighbours: Vec<[f64; 3]>,
+    /// From the marker to its neighbours, in m².
+    squared_distances: Vec<f64>,
 }
 
-impl Setting<'_> {
-    /// The marker's position in this frame. It equals the observed one at a border, whatever the
-    /// neighbours are.
-    pub fn solve(&self, solver: EdmSolver) -> [f64; 3] {
-        let [first, second, third] = extents(self.neighbours);
-        if self.neighbours.len() < 3 || second.is_nan() || second <= DEGENERATE * first {
-            return self.trilaterate(self.carried());
+impl Pose {
+    fn new(points: &[[f64; 3]], weights: &[f64]) -> Self {
+        let (marker, neighbours) = (points[0], &points[1..]);
+        let centre = centre(neighbours, weights);
+        let weigh = |(&p, &w): (&[f64; 3], &f64)| scale(w, sub(p, centre));
+        Self {
+            marker: sub(marker, centre),
+            neighbours: neighbours.iter().zip(weights).map(weigh).collect(),
+            squared_distances: neighbours.iter().map(|&p| distance(p, marker).powi(2)).collect(),
         }
-        let start = self.moved_along();
-        let found = match solver {
-            EdmSolver::Scaling => self.scale(start),
-            EdmSolver::Trilateration => self.trilaterate(start),
-        };
+    }
+}
+
+impl Borders {
+    /// From the points at each border, the marker first and then its neighbours, at most
+    /// [`MAX_NEIGHBOURS`], with their weights.
+    pub fn new(points: [&[[f64; 3]]; 2], weights: Vec<f64>) -> Self {
+        let poses = points.map(|points| Pose::new(points, &weights));
+        Self { poses, between: Between::new(points[0], points[1]), weights }
+    }
+
+    /// The marker's position at a share of the way between the borders, where its neighbours are `here`. It
+    /// equals the observed one at a border, whatever the neighbours are.
+    pub fn solve(&self, share: f64, here: &[[f64; 3]], solver: EdmSolver) -> [f64; 3] {
+        let middle = centre(here, &self.weights);
+        let [first, second, third] = extents(here);
+        if here.len() < 3 || second.is_nan() || second <= DEGENERATE * first {
+            // Offsets from the middle, interpolated: no turn is made up where the neighbours do not show one.
+            let [before, after] = [&self.poses[0], &self.poses[1]].map(|pose| pose.marker);
+            return self.trilaterate(share, here, add(middle, mix(share, before, after)));
+        }
+        // The sums of products in [Horn87] of the neighbours at the borders and here.
+        let mut offsets = [[0.0; 3]; MAX_NEIGHBOURS];
+        for (offset, &p) in offsets.iter_mut().zip(here) {
+            *offset = sub(p, middle);
+        }
+        let sums = [0, 1].map(|side| products(&self.poses[side].neighbours, &offsets));
+        // The borders' positions carried rigidly with the neighbours, and interpolated.
+        let [before, after] =
+            [0, 1].map(|side| best_rotation(&sums[side]).apply(self.poses[side].marker));
+        let start = mix(share, before, after);
         // The height above a plane is what distances determine worst.
         let trust = (third / (DEGENERATE * second)).min(1.0);
-        add(scale(trust, found), scale(1.0 - trust, start))
-    }
-
-    /// The borders' positions carried rigidly with the neighbours, and interpolated.
-    fn moved_along(&self) -> [f64; 3] {
-        self.mix(|pose| Fit::of(&pose.neighbours, self.neighbours, self.weights).apply(pose.marker))
-    }
-
-    /// The borders' offsets from the centre of the neighbours, interpolated: no turn is made up where
-    /// the neighbours do not show one.
-    fn carried(&self) -> [f64; 3] {
-        let here = centre(self.neighbours, self.weights);
-        self.mix(|pose| add(here, sub(pose.marker, centre(&pose.neighbours, self.weights))))
-    }
-
-    fn mix(&self, place: impl Fn(&Pose) -> [f64; 3]) -> [f64; 3] {
-        self.borders.iter().fold([0.0; 3], |sum, (w, pose)| add(sum, scale(*w, place(pose))))
-    }
-
-    fn trilaterate(&self, start: [f64; 3]) -> [f64; 3] {
-        let distances: Vec<f64> =
-            (0..self.neighbours.len()).map(|j| self.squared_distance(j + 1, 0).sqrt()).collect();
-        trilaterate(self.neighbours, &distances, self.weights, start)
-    }
-
-    /// Squared distance in m², interpolated linearly between the borders; point 0 is the marker.
-    fn squared_distance(&self, i: usize, j: usize) -> f64 {
-        let point = |pose: &Pose, i: usize| {
-            i.checked_sub(1).map_or(pose.marker, |neighbour| pose.neighbours[neighbour])
+        let found = match solver {
+            EdmSolver::Scaling => self.scale(share, &sums, start),
+            EdmSolver::Trilateration => {
+                sub(self.trilaterate(share, here, add(middle, start)), middle)
+            }
         };
-        self.borders.iter().map(|(w, pose)| w * squared(point(pose, i), point(pose, j))).sum()
+        add(middle, mix(trust, start, found))
     }
 
-    /// The scaled points laid on the neighbours, in the handedness that comes closer to `start`.
-    fn scale(&self, start: [f64; 3]) -> [f64; 3] {
-        let n = self.neighbours.len() + 1;
-        let matrix: Vec<f64> = (0..n * n).map(|k| self.squared_distance(k / n, k % n)).collect();
-        let points = classical_scaling(&matrix, n);
+    /// The scaled points laid on the neighbours, in the handedness that comes closer to `start`; relative to
+    /// the middle of the neighbours.
+    fn scale(&self, share: f64, sums: &[[[f64; 3]; 3]; 2], start: [f64; 3]) -> [f64; 3] {
+        let scaled = self.between.at(share);
+        let sums = scaled.products(&sums[0], &sums[1]);
+        let point = scaled.point(self.poses[0].marker, self.poses[1].marker);
         let laid = [1.0, -1.0].map(|hand| {
-            let points: Vec<[f64; 3]> = points.iter().map(|&[x, y, z]| [hand * x, y, z]).collect();
-            Fit::of(&points[1..], self.neighbours, self.weights).apply(points[0])
+            let turn = best_rotation(&[scale(hand, sums[0]), sums[1], sums[2]]);
+            turn.apply([hand * point[0], point[1], point[2]])
         });
         let [right, left] = laid;
         if distance(left, start) < distance(right, start) { left } else { right }
     }
+
+    /// With squared distances in linear interpolation.
+    fn trilaterate(&self, share: f64, here: &[[f64; 3]], start: [f64; 3]) -> [f64; 3] {
+        let [before, after] = [&self.poses[0], &self.poses[1]].map(|pose| &pose.squared_distances);
+        let mut distances = [0.0; MAX_NEIGHBOURS];
+        for ((d, a), b) in distances.iter_mut().zip(before).zip(after) {
+            *d = ((1.0 - share) * a + share * b).sqrt();
+        }
+        trilaterate(here, &distances[..here.len()], &self.weights, start)
+    }
+}
+
+/// The point at a share of the way from `p` to `q`.
+fn mix(share: f64, p: [f64; 3], q: [f64; 3]) -> [f64; 3] {
+    add(scale(1.0 - share, p), scale(share, q))
 }

@@ -1,6 +1,6 @@
 //! A point from its distances to known points.
 
-use mocap_core::geometry::{add, dot, norm, scale, sub};
+use mocap_core::geometry::{add, cofactors, dot, norm, scale, sub};
 
 /// Damping relative to the sum of weights: what the distances do not determine stays at the start.
 const DAMPING: f64 = 1e-4;
@@ -68,10 +68,8 @@ pub(crate) fn trilaterate(
 
 /// Cramer's rule.
 fn solve(rows: &[[f64; 3]; 3], right: [f64; 3]) -> Option<[f64; 3]> {
-    use mocap_core::geometry::cross;
-    let [a, b, c] = *rows;
-    let minors = [cross(b, c), cross(c, a), cross(a, b)];
-    let determinant = dot(a, minors[0]);
+    let minors = cofactors(rows);
+    let determinant = dot(rows[0], minors[0]);
     let sum = (0..3).fold([0.0; 3], |sum, k| add(sum, scale(right[k], minors[k])));
     let x = scale(1.0 / determinant, sum);
     x.iter().all(|c| c.is_finite()).then_some(x)

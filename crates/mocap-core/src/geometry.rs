@@ -76,6 +76,13 @@ pub fn transposed(m: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
     std::array::from_fn(|r| std::array::from_fn(|c| m[c][r]))
 }
 
+/// Cofactors of a matrix, row by row: its determinant times its transposed inverse.
+#[must_use]
+#[inline]
+pub fn cofactors(m: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
+    [cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1])]
+}
+
 /// A rotation followed by a translation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RigidTransform {

@@ -91,7 +91,7 @@ impl Rotation {
     /// The rotation nearest to a matrix, row by row, in the Frobenius norm: never a reflection, also where
     /// the matrix is one. `None` for entries that are not finite, and for a zero matrix.
     ///
-    /// Implements [Horn87] Sec. 4.
+    /// By [`best_rotation`].
     #[must_use]
     pub fn nearest(m: &[[f64; 3]; 3]) -> Option<Self> {
         let largest = m.iter().flatten().fold(0.0_f64, |a, c| a.max(c.abs()));
@@ -192,7 +192,7 @@ impl Rotation {
 
     /// The quaternion of an orthonormal matrix, from its largest component, which is at least ½: no
     /// square root of a difference of near equals.
-    fn of_orthonormal(m: &[[f64; 3]; 3]) -> Self {
+    pub(crate) fn of_orthonormal(m: &[[f64; 3]; 3]) -> Self {
         let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = *m;
         let trace = xx + yy + zz;
         let q = if trace >= xx.max(yy).max(zz) {
