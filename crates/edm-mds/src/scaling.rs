@@ -9,10 +9,10 @@ use crate::moments::{centroid, products};
 type Matrix = [[f64; 3]; 3];
 
 /// Eigenvalues kept are at least so many times those dropped where iteration finds them: each step gains that.
-const SEPARATION: f64 = 4.0;
+const SEPARATION: f64 = 2.0;
 
 /// Steps that reach rounding at that factor.
-const STEPS: usize = 30;
+const STEPS: usize = 52;
 
 /// Classical scaling of squared distances that are interpolated linearly between those of two poses of the
 /// same points.
@@ -57,9 +57,11 @@ impl Between {
         let spread = (share * (1.0 - share)).max(0.0).sqrt();
         let cross = combine(spread, &self.across, spread * share, &self.change);
         let dropped = self.change.map(|row| scale(spread * spread, row));
-        // The product of the two larger eigenvalues is below a quarter of the squared trace.
-        let least = 4.0 * determinant(&kept) / trace(&kept).powi(2);
-        let [a, d] = if least >= SEPARATION * trace(&dropped) {
+        // Products of two eigenvalues are the eigenvalues of the cofactors, so that their Frobenius norm bounds the
+        // product of the two larger ones, and the next line the smallest from below.
+        let minors = cofactors(&kept);
+        let least = dot(kept[0], minors[0]) / frobenius(&minors);
+        let [a, d] = if least >= SEPARATION * frobenius(&dropped) {
             leading_by_iteration(&kept, &cross, &dropped)
         } else {
             leading_by_rotations(&kept, &cross, &dropped)
@@ -153,12 +155,8 @@ fn combine(s: f64, a: &Matrix, t: f64, b: &Matrix) -> Matrix {
     std::array::from_fn(|r| std::array::from_fn(|c| s * a[r][c] + t * b[r][c]))
 }
 
-fn determinant(m: &Matrix) -> f64 {
-    dot(m[0], cofactors(m)[0])
-}
-
-fn trace(m: &Matrix) -> f64 {
-    m[0][0] + m[1][1] + m[2][2]
+fn frobenius(m: &Matrix) -> f64 {
+    m.iter().map(|row| dot(*row, *row)).sum::<f64>().sqrt()
 }
 
 #[cfg(test)]
