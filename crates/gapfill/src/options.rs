@@ -34,7 +34,7 @@ pub struct Options {
     /// What becomes of the step at the borders of a gap; `None`: the method's own choice, which is to
     /// join for `lds` and `bolero-sc`.
     pub borders: Option<Borders>,
-    /// Bodies that a kinematic fill may find; the first whose root a take shows counts.
+    /// Bodies that a kinematic fill may find; the one that knows most markers of a take counts.
     pub bodies: Vec<Body>,
 }
 
@@ -55,7 +55,7 @@ impl Default for Options {
             edges: Edges::default(),
             max_error_m: None,
             borders: None,
-            bodies: vec![Body::cmu_41()],
+            bodies: Body::built_in(),
         }
     }
 }

@@ -147,7 +147,7 @@ pub const METHODS: &[Method] = &[
     },
     Method {
         id: "ik",
-        summary: "a skeleton solved for the whole body; for whole limbs that are gone; knows the CMU and Plug-in Gait markers",
+        summary: "a skeleton solved for the whole body; for whole limbs that are gone; knows the CMU, Plug-in Gait, front_waist-53 and production-57 markers",
         options: &["bodies"],
         build: kinematic,
     },

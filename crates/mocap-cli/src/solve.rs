@@ -7,10 +7,14 @@ use std::{
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use mocap_core::{MarkerKnowledge, Motion, RigidTransform, Rotation, Take, UpAxis};
-use mocap_io::{Format, LengthUnit, MotionFile, encode_markers, encode_motion};
+use mocap_io::{Format, LengthUnit, encode_markers, encode_motion};
 use mocap_report::{FigureFormat, MotionPlot, animate_motion, plot_motion};
 use serde_json::{Value, json};
-use solve_ik::{Body, IkParams, IkSolver, Solution};
+use solve_ik::Solution;
+
+mod bodies;
+
+use bodies::BodyArgs;
 
 use crate::{
     convert::skeleton_beside,
@@ -30,23 +34,33 @@ use crate::{
   mocap solve walk.c3d -o walk.amc --skeleton subject.asf
   mocap solve walk.c3d -o walk.bvh --plot walk.svg --animate film.svg --markers clean.c3d
 
-Bodies: `generic` knows the 41 markers of the CMU database and the Plug-in Gait names of the same places. An .asf, .amc
-or .bvh file gives the bones of a known skeleton whose joints have the generic body's names. Any other body is a text
-file: print the generic one with --save-body, and change what differs.")]
+  mocap solve walk.c3d -o walk.bvh --calibrate-on 1..600 --save-body subject.body
+  mocap solve jump.c3d -o jump.bvh --skeleton subject.body --no-calibration
+  mocap solve jump.c3d -o jump.bvh --learn-from walk.c3d --motion walk.amc --skeleton subject.asf
+
+Bodies: three are built in, for the 41 markers of the CMU database (and the Plug-in Gait names of the same places), and for
+the layouts front_waist-53 and production-57 with up to ten markers on each hand. An .asf, .amc or .bvh file gives the
+bones of a known skeleton whose joints have a built-in body's names. With --learn-from, a body comes from a take and the
+motion that another program made of it, and is used as it is.
+
+A body file is text with one fact a line. Print one with --save-body, and change what differs:
+  joint  hips                          the root; parents come before their children
+  joint  knee hips 0 -0.42 0           name, parent, place relative to it in the rest pose, in metres
+  rigid  knee                          never turns
+  spread knee 70 6 1 0 0               standard deviation in degrees about an axis, across it, the axis
+  limit  knee -5 165                   degrees about that axis
+  marker LKNE hips 0.05 -0.42 0 share knee 0.3 spread 0.03
+  alias  LKNE L_Knee                   `L_Knee` of a take counts as `LKNE`")]
 pub(crate) struct Solve {
     /// Recording of labelled markers
     input: PathBuf,
     #[command(flatten)]
     output: OutputArgs,
-    /// Body to solve for: `generic`, a body file (.body), or a skeleton (.asf, .amc, .bvh) whose bones are known
-    #[arg(long, value_name = "FILE|generic", default_value = "generic")]
-    skeleton: String,
+    #[command(flatten)]
+    body: BodyArgs,
     /// How to solve
     #[arg(long, value_enum, default_value = "ik")]
     method: Method,
-    /// Take the body as it is, without fitting it to the wearer
-    #[arg(long)]
-    no_calibration: bool,
     /// Keep the fitted body for other takes of the same session
     #[arg(long, value_name = "FILE.body")]
     save_body: Option<PathBuf>,
@@ -93,14 +107,9 @@ impl Solve {
             rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
         }
         let Method::Ik = self.method;
-        let body = body(&self.skeleton, &self.read)?;
         let file = self.read.read(&self.input)?;
         let take = file.take();
-        let mut params = IkParams::default();
-        if self.no_calibration {
-            params.calibration_rounds = 0;
-        }
-        let solver = IkSolver::new(body, params)?;
+        let solver = self.body.solver(&file, &self.read)?;
         let progress = Progress::new("ik", self.json);
         let start = Instant::now();
         let solution = solver.solve_observed(take, &mut |report| progress.show(report));
@@ -122,12 +131,12 @@ impl Solve {
 
     /// Everything that can be refused before any work is done.
     fn check(&self) -> Result<Format> {
-        let skeleton = Path::new(&self.skeleton);
-        self.output.check(&[&self.input, skeleton])?;
+        let mut inputs = self.inputs();
+        self.output.check(&inputs)?;
+        inputs.push(&self.output.output);
         let others = [&self.save_body, &self.markers, &self.plot, &self.animate];
         for path in others.into_iter().flatten() {
-            let other = self.output.named(path);
-            other.check(&[&self.input, skeleton, &self.output.output])?;
+            self.output.named(path).check(&inputs)?;
         }
         if self.threads == Some(0) {
             bail!("--threads must be at least 1");
@@ -155,13 +164,17 @@ impl Solve {
         }
     }
 
+    fn inputs(&self) -> Vec<&Path> {
+        self.body.inputs().chain([self.input.as_path()]).collect()
+    }
+
     fn write(&self, format: Format, motion: &Motion) -> Result<()> {
         if is_json(&self.output.output) {
             return self.output.write(&serde_json::to_vec(&motion_json(motion)?)?);
         }
         let bytes = encode_motion(motion, format, LengthUnit::Centimetre)?;
         if format == Format::Amc {
-            skeleton_beside(&self.output, &[&self.input, Path::new(&self.skeleton)], motion)?;
+            skeleton_beside(&self.output, &self.inputs(), motion)?;
         }
         self.output.write(&bytes)
     }
@@ -259,34 +272,14 @@ pub(crate) fn is_json(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"))
 }
 
-/// The body that `--skeleton` names.
-fn body(name: &str, read: &ReadArgs) -> Result<Body> {
-    if name == "generic" {
-        return Ok(Body::cmu_41());
-    }
-    let path = Path::new(name);
-    match Format::of(path) {
-        Some(format) if !format.holds_markers() => {
-            let file = MotionFile::read(path, None, &read.options())?;
-            let skeleton = Arc::clone(file.motion().skeleton());
-            Body::cmu_41()
-                .on(skeleton)
-                .with_context(|| format!("{name} does not fit the generic body"))
-        }
-        Some(_) => bail!("{name} holds markers; a skeleton is an .asf, .amc, .bvh or .body file"),
-        None => {
-            let text = std::fs::read_to_string(path)
-                .with_context(|| format!("cannot read the body {name}"))?;
-            Ok(Body::parse(&text, name)?)
-        }
-    }
-}
-
 /// The motion with z up turned to y up: x becomes z, y becomes x, z becomes y.
 pub(crate) fn lie_down(motion: &Motion) -> Result<Motion> {
-    let turn = Rotation::from_matrix(&[[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]);
-    let rotation = turn.context("a permutation of the axes is a rotation")?;
-    Ok(motion.transformed(&RigidTransform { rotation, translation: [0.0; 3] })?)
+    Ok(motion.transformed(&RigidTransform { rotation: to_y_up()?, translation: [0.0; 3] })?)
+}
+
+fn to_y_up() -> Result<Rotation> {
+    Rotation::from_matrix(&[[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
+        .context("a permutation of the axes is a rotation")
 }
 
 /// Joints, and for each frame their places in metres and rotations relative to the parent as w, x, y, z.

@@ -1,20 +1,20 @@
 use std::{collections::HashMap, sync::Arc};
 
 use mocap_core::{
-    JointFrames, MarkerSet, Motion, Skeleton, Take,
-    geometry::{add, cross, distance, dot, norm, scale, sub},
+    Joint, MarkerSet, Skeleton,
+    geometry::{add, cross, dot, norm, scale, sub},
 };
 
 use crate::IkError;
 
+mod built_in;
 mod parse;
 mod print;
-
-const CMU_41: &str = include_str!("../data/cmu-41.body");
+mod worn;
 
 /// A skeleton, how its joints turn, and where its markers sit.
 ///
-/// It is a text file with one fact a line; `data/cmu-41.body` is the one that ships with the crate.
+/// It is a text file with one fact a line; those in `data` ship with the crate ([`Body::built_in`]).
 ///
 /// ```text
 /// name   My body
@@ -88,15 +88,6 @@ pub(crate) struct Site {
 }
 
 impl Body {
-    /// The body for the 41 markers of the CMU database, with the joints of its ASF files.
-    ///
-    /// # Panics
-    /// Never: the file is part of the crate and read by its tests.
-    #[must_use]
-    pub fn cmu_41() -> Self {
-        Self::parse(CMU_41, "cmu-41.body").expect("the built-in file is well-formed")
-    }
-
     /// Reads a body from its text form; `file` is the name that errors show.
     ///
     /// # Errors
@@ -148,46 +139,6 @@ impl Body {
         Ok(body)
     }
 
-    /// The body as a solved motion of its wearer shows it: on the motion's skeleton, with each marker at its mean place on the
-    /// joint that carries it. Spreads become what the places really vary by, 1 mm at least. Markers that the take
-    /// does not show keep their places.
-    ///
-    /// The motion may come from another program, such as an ASF/AMC file; one take with it makes a template for the others of
-    /// the session. It must stand in the take's axes.
-    ///
-    /// # Errors
-    /// [`IkError::NoSuchJoint`] for a marker whose joint the skeleton lacks, [`IkError::Frames`] for a motion of another
-    /// length than the take, [`IkError::TwoLabels`], and [`IkError::Core`].
-    pub fn worn(self, take: &Take, motion: &Motion) -> Result<Self, IkError> {
-        let (frames, poses) = (take.frames(), motion.poses().len());
-        if frames != poses {
-            return Err(IkError::Frames { frames, poses });
-        }
-        let mut body = self.on(Arc::clone(motion.skeleton()))?;
-        let columns = body.columns(take.markers())?;
-        let joints = motion.poses().iter().map(|pose| motion.skeleton().frames(pose));
-        let joints = joints.collect::<Result<Vec<JointFrames>, _>>()?;
-        for (site, column) in body.sites.iter_mut().zip(columns) {
-            let Some(column) = column else { continue };
-            let local = |(t, frames): (usize, &JointFrames)| {
-                let off = sub(take.position(t, column)?, frames.origins_m[site.near]);
-                Some(frames.rotations[site.near].inverse().apply(off))
-            };
-            let places: Vec<[f64; 3]> = joints.iter().enumerate().filter_map(local).collect();
-            if places.is_empty() {
-                continue;
-            }
-            let share = 1.0 / places.len() as f64;
-            let mean = scale(share, places.iter().copied().fold([0.0; 3], add));
-            let square: f64 = places.iter().map(|p| distance(*p, mean).powi(2)).sum();
-            site.place = mean;
-            site.spread = (share * square / 3.0).sqrt().max(0.001);
-            // The mean is of the first joint alone.
-            site.far = None;
-        }
-        Ok(body)
-    }
-
     /// Name of the body.
     #[must_use]
     pub fn name(&self) -> &str {
@@ -210,8 +161,12 @@ impl Body {
         self.sites.iter().map(|site| (site.marker.as_str(), site.near, site.place))
     }
 
-    /// Second joints hang on first ones.
+    /// Places are finite, and second joints hang on first ones.
     pub(crate) fn check(&self) -> Result<(), IkError> {
+        let lost = |joint: &&Joint| joint.offset_m.iter().any(|c| !c.is_finite());
+        if let Some(joint) = self.skeleton.joints().iter().find(lost) {
+            return Err(IkError::NoPlace { joint: joint.name.clone() });
+        }
         for site in &self.sites {
             let Some((far, _)) = site.far else { continue };
             if self.skeleton.joints()[far].parent != Some(site.near) {

@@ -36,6 +36,12 @@ pub enum IkError {
         /// The joint.
         joint: String,
     },
+    /// A joint of a skeleton whose place is no number.
+    #[error("joint `{joint}` has no finite place; give its offset from its parent in metres")]
+    NoPlace {
+        /// The joint.
+        joint: String,
+    },
     /// A second joint of a marker that does not hang on the first.
     #[error(
         "marker `{marker}` sits on `{near}` and `{far}`, but `{far}` is no child of `{near}`; a marker \
@@ -100,6 +106,15 @@ pub enum IkError {
         frames: usize,
         /// Frames of the motion.
         poses: usize,
+    },
+    /// A motion that is not where the markers are.
+    #[error(
+        "the markers lie {rms_m:.2} m (rms) from the joints that carry them, which is no body's size; take and \
+         motion must be of the same performance, in the same units and axes"
+    )]
+    Apart {
+        /// Root mean square distance of a marker from its joint, in metres.
+        rms_m: f64,
     },
     /// A take without frames.
     #[error("the take has no frame; there is nothing to solve")]

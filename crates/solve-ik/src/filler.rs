@@ -27,7 +27,7 @@ pub struct IkFiller {
 }
 
 impl IkFiller {
-    /// A filler for takes of any of these bodies; the first whose root a take shows is taken.
+    /// A filler for takes of any of these bodies: the one that knows most markers of a take and whose root it shows.
     ///
     /// # Errors
     /// [`IkError::Parameter`].
@@ -42,8 +42,8 @@ impl IkFiller {
         observer: &mut dyn FnMut(&IterReport) -> ControlFlow<()>,
     ) -> Result<(Ready, Outcome), IkError> {
         let mut first = None;
-        for body in &self.bodies {
-            let solver = IkSolver::new(body.clone(), self.params)?;
+        for body in Body::for_markers(self.bodies.clone(), take.markers()) {
+            let solver = IkSolver::new(body, self.params)?;
             match solver.prepare(take) {
                 Ok(ready) => {
                     let outcome = ready.poses(&self.params, take.rate_hz(), observer);

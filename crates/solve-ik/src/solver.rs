@@ -1,10 +1,13 @@
-use std::{ops::ControlFlow, sync::Arc};
+use std::{
+    ops::{ControlFlow, Range},
+    sync::Arc,
+};
 
 use mocap_core::{
     IterReport, Motion, MotionSolver, Skeleton, SolveError, Solved, Take, Termination,
     geometry::dot,
 };
-use ndarray::Array3;
+use ndarray::{Array3, s};
 
 use crate::{
     IkError, IkParams,
@@ -100,6 +103,18 @@ impl IkSolver {
     /// [`IkError`] where the take does not tell where the body is.
     pub fn calibrate(&self, take: &Take) -> Result<Body, IkError> {
         Ok(self.prepare(take)?.body)
+    }
+
+    /// The body fitted to the wearer on some frames of a take, such as a T-pose or a range of motion.
+    ///
+    /// # Errors
+    /// [`IkError::NoFrames`] for a range without frames or beyond the take, and as [`calibrate`](Self::calibrate).
+    pub fn calibrate_on(&self, take: &Take, frames: Range<usize>) -> Result<Body, IkError> {
+        if frames.is_empty() || frames.end > take.frames() {
+            return Err(IkError::NoFrames);
+        }
+        let part = take.positions().slice(s![frames, .., ..]).to_owned();
+        self.calibrate(&Take::from_positions(Arc::clone(take.markers()), take.rate_hz(), part)?)
     }
 
     /// Solves every frame and tells `observer` of finished ones, which may stop the work; frames that are left

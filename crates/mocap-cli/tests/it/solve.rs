@@ -48,12 +48,18 @@ fn what_cannot_be_solved_is_refused_before_anything_is_written() {
     let bench = Bench::with_gap("csv");
     for (line, words) in [
         ("solve gap.csv -o out.c3d", ".bvh, .amc, .asf or .json"),
-        ("solve gap.csv -o out.bvh --skeleton nobody.body", "cannot read the body nobody.body"),
+        (
+            "solve gap.csv -o out.bvh --skeleton nobody.body",
+            "cannot read the body nobody.body; built-in ones are cmu-41, front_waist-53, production-57",
+        ),
         ("solve gap.csv -o out.bvh --skeleton walk.csv", "holds markers"),
         ("solve gap.csv -o out.bvh --markers m.bvh", "markers go into"),
         ("solve gap.csv -o out.bvh --animate film.png", "an animation is an .svg file"),
         ("solve gap.csv -o out.bvh --threads 0", "at least 1"),
         ("solve gap.csv -o gap.csv", "is an input"),
+        ("solve gap.csv -o out.bvh --learn-from walk.csv", "--motion"),
+        ("solve gap.csv -o out.bvh --calibrate-on 0..9", "do not lie in the take's 1..200"),
+        ("solve gap.csv -o out.bvh --calibrate-on 1..9 --no-calibration", "cannot be used with"),
     ] {
         let error = bench.fails(line);
         assert!(error.contains(words), "{line}: {error}");
@@ -62,4 +68,37 @@ fn what_cannot_be_solved_is_refused_before_anything_is_written() {
     std::fs::write(bench.path("dots.csv"), "a-x,a-y,a-z\n1,2,3\n2,3,4\n").unwrap();
     let error = bench.fails("solve dots.csv -o out.bvh");
     assert!(error.contains("cannot solve dots.csv") && error.contains("LFWT"), "{error}");
+}
+
+#[test]
+fn bodies_are_learnt_and_kept() {
+    let bench = Bench::with_gap("c3d");
+    // A motion stands for one from another program; the body that it shows explains the markers as it is.
+    bench.ok("solve gap.c3d -o walk.amc --save-body fitted.body");
+    let learn = "--learn-from gap.c3d --motion walk.amc --skeleton walk.asf";
+    let learnt =
+        bench.json(&format!("solve gap.c3d -o learnt.bvh {learn} --json --save-body learnt.body"));
+    assert!(learnt["mean_residual_mm"].as_f64().unwrap() < 8.0, "{learnt}");
+    assert_eq!(learnt["calibration"].as_array().map(Vec::len), Some(0));
+    let kept =
+        bench.json("solve gap.c3d -o kept.bvh --skeleton learnt.body --no-calibration --json");
+    assert!(kept["mean_residual_mm"].as_f64().unwrap() < 8.0, "{kept}");
+    let part = bench.json("solve gap.c3d -o part.bvh --calibrate-on 1..100 --json");
+    assert!(part["mean_residual_mm"].as_f64().unwrap() < 10.0, "{part}");
+    bench.ok("synth --motion jump --frames 150 -o other.c3d");
+    let error = bench.fails("solve gap.c3d -o out.bvh --learn-from other.c3d --motion walk.amc");
+    assert!(error.contains("teach no body") && error.contains("200 frames"), "{error}");
+    assert!(!exists(&bench.path("out.bvh")));
+}
+
+#[test]
+fn every_layout_of_synth_is_solved_without_options() {
+    let bench = Bench::new();
+    for layout in ["front_waist-53 --hands 5", "production-57"] {
+        let name = layout.split(' ').next().unwrap();
+        bench.ok(&format!("synth --motion walk --frames 120 --layout {layout} -o {name}.c3d"));
+        let report = bench.json(&format!("solve {name}.c3d -o {name}.bvh --json"));
+        assert_eq!(report["unmapped_markers"].as_array().map(Vec::len), Some(0), "{report}");
+        assert!(report["mean_residual_mm"].as_f64().unwrap() < 6.0, "{report}");
+    }
 }

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use mocap_core::{CoreError, Joint, Skeleton};
+use mocap_core::{CoreError, Joint, Motion, RigidTransform, Rotation, Skeleton};
+use mocap_synth::Activity;
 use solve_ik::{Body, IkError};
 
-use crate::worn::synthetic_body;
+use crate::worn::{record, synthetic_body};
 
 const SMALL: &str = "joint hips\njoint knee hips 0 -0.4 0\nspread knee 70 6 1 0 0\nlimit knee -5 160\n\
     marker A hips 0.1 0 0\nmarker B hips 0 0 0.1 share knee 0.5\nalias B Bee\n";
@@ -31,6 +32,7 @@ fn a_wrong_line_is_named() {
     };
     broken("joint toe ankle 0 0 0", "parents come first");
     broken("joint knee hips 0 0 0", "unique");
+    broken("joint toe toe 0 0 0", "parents come first");
     broken("joint other", "one joint is the root");
     broken("joint toe knee 0 nan 0", "finite");
     broken("joint toe knee 0 0", "three numbers");
@@ -62,7 +64,27 @@ fn markers_move_to_a_skeleton_of_the_same_names_only() {
     assert!(
         matches!(&error, IkError::NoSuchJoint { marker, joint } if marker == "B" && joint == "knee")
     );
-    // A ring of joints is no skeleton to begin with.
+    // A ring of joints is no skeleton to begin with, in a body file neither.
+    let error =
+        Body::parse("joint r\njoint a b 0 0 0\njoint b a 0 0 0\n", "ring.body").unwrap_err();
+    assert!(matches!(error, IkError::BodyLine { line: 2, .. }), "{error}");
     let ring = Skeleton::new(vec![joint("a", Some(1)), joint("b", Some(0))]);
     assert!(matches!(ring, Err(CoreError::JointOrder { .. })));
+}
+
+#[test]
+fn a_motion_that_is_not_of_the_take_teaches_no_body() {
+    let recorded = record(Activity::Walk, 40, 1);
+    let learn = |motion: &Motion| synthetic_body().worn(recorded.take(), motion);
+    assert!(learn(recorded.motion()).is_ok());
+    let lying = RigidTransform {
+        rotation: Rotation::about([1.0, 0.0, 0.0], std::f64::consts::FRAC_PI_2),
+        translation: [0.0; 3],
+    };
+    let error = learn(&recorded.motion().transformed(&lying).unwrap()).unwrap_err();
+    assert!(matches!(error, IkError::Apart { rms_m } if rms_m > 0.5), "{error}");
+    assert!(error.to_string().contains("same units and axes"), "{error}");
+    let shorter = record(Activity::Walk, 39, 1);
+    let error = learn(shorter.motion()).unwrap_err();
+    assert!(matches!(error, IkError::Frames { frames: 40, poses: 39 }), "{error}");
 }

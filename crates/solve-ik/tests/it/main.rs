@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::float_cmp, clippy::print_stdout)] // tests
 
 mod bodies;
+mod built_in;
 mod fill;
 mod real;
 mod refusals;

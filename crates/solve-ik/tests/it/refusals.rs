@@ -59,6 +59,25 @@ fn takes_without_a_visible_root_are_refused() {
     let empty =
         Take::from_positions(take.markers().clone(), 120.0, Array3::zeros((0, 41, 3))).unwrap();
     assert!(matches!(solver(Body::cmu_41()).solve(&empty), Err(IkError::NoFrames)));
+    let beyond = solver(Body::cmu_41()).calibrate_on(&take, 40..51);
+    assert!(matches!(beyond, Err(IkError::NoFrames)));
+    assert!(solver(Body::cmu_41()).calibrate_on(&take, 0..1).is_ok());
+}
+
+#[test]
+fn numbers_that_are_none_are_gaps_in_a_take_and_errors_elsewhere() {
+    let take = record(Activity::Walk, 60, 1).into_take();
+    let knee = take.markers().find("LKNE").unwrap();
+    let mut xyz = take.positions().to_owned();
+    xyz[(30, knee, 1)] = f64::NAN;
+    let holed = Take::from_positions(take.markers().clone(), 120.0, xyz).unwrap();
+    assert!(!holed.is_observed(30, knee));
+    let solution = solver(Body::cmu_41()).solve(&holed).unwrap();
+    assert!(solution.markers.iter().all(|c| c.is_finite()));
+    let mut joints = Body::cmu_41().skeleton().joints().to_vec();
+    joints[3].offset_m[2] = f64::NAN;
+    let error = Body::cmu_41().on(Skeleton::new(joints).unwrap()).unwrap_err();
+    assert!(matches!(&error, IkError::NoPlace { joint } if joint == "ltibia"), "{error}");
 }
 
 #[test]

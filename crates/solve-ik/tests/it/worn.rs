@@ -9,7 +9,7 @@ use mocap_core::{
     Holdout, Motion, Rotation, Take,
     geometry::{add, scale},
 };
-use mocap_synth::{Activity, Attachment, Hands, Synth, SynthParams, SyntheticTake};
+use mocap_synth::{Activity, Attachment, Hands, Person, Synth, SynthParams, SyntheticTake};
 use ndarray::{Array3, Array4};
 use solve_ik::Body;
 
@@ -50,12 +50,21 @@ pub fn synthetic_body() -> Body {
     generic_body(&SynthParams::default())
 }
 
-/// The generic body of a layout: its means over forty people.
+/// The generic body of a layout: its means over forty bodies of the template's size.
 pub fn generic_body(params: &SynthParams) -> Body {
+    mean_body(params, |_| None)
+}
+
+/// The body of a layout for people of all sizes: its means over forty of them.
+pub fn people_body(params: &SynthParams) -> Body {
+    mean_body(params, |seed| Some(Person::draw(seed)))
+}
+
+fn mean_body(params: &SynthParams, person: impl Fn(u64) -> Option<Person>) -> Body {
     const PEOPLE: u64 = 40;
-    let others: Vec<SyntheticTake> = (0..PEOPLE)
-        .map(|k| record_with(&SynthParams { frames: 1, seed: 900 + k, ..*params }))
-        .collect();
+    let record =
+        |seed| record_with(&SynthParams { frames: 1, seed, person: person(seed), ..*params });
+    let others: Vec<SyntheticTake> = (900..900 + PEOPLE).map(record).collect();
     let mean = |value: &dyn Fn(&SyntheticTake) -> [f64; 3]| {
         scale(1.0 / PEOPLE as f64, others.iter().map(value).fold([0.0; 3], add))
     };
