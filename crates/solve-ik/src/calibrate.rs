@@ -256,13 +256,15 @@ impl Layout {
         for column in &mut halves {
             solver.normal.half_solve(column);
         }
-        let inner = |p: &[[f64; 3]], q: &[[f64; 3]]| -> f64 {
-            p.iter().zip(q).map(|(x, y)| dot(*x, *y)).sum()
-        };
-        for i in 0..count {
-            gradient[i] -= inner(&halves[i], &half_gradient);
-            for j in 0..=i {
-                matrix[i * count + j] -= inner(&halves[i], &halves[j]);
+        // A marker moves with the joints above it alone, and elimination towards the root keeps that so.
+        for (i, half) in halves.iter().enumerate() {
+            let rows: Vec<usize> =
+                (0..half.len()).filter(|&r| half[r].iter().any(|c| *c != 0.0)).collect();
+            let inner =
+                |other: &[[f64; 3]]| -> f64 { rows.iter().map(|&r| dot(half[r], other[r])).sum() };
+            gradient[i] -= inner(&half_gradient);
+            for (j, other) in halves[..=i].iter().enumerate() {
+                matrix[i * count + j] -= inner(other);
             }
         }
         solver.normal.solve(&mut step);

@@ -28,7 +28,8 @@ pub(crate) struct BodyArgs {
     /// The motion of that take (.amc, .bvh); the skeleton of an .amc is the .asf beside it, or --skeleton
     #[arg(long, value_name = "FILE", requires = "learn_from")]
     motion: Option<PathBuf>,
-    /// Fit the body on these frames alone, both included, as the file counts them: a T-pose (`1`) or a range of motion (`1..600`)
+    /// Fit the body on these frames alone, both included, as the file counts them: a T-pose (`1`) or, better, a range of motion
+    /// (`1..600`); poses that differ tell where joints are
     #[arg(long, value_name = "A..B", conflicts_with_all = ["learn_from", "no_calibration"])]
     calibrate_on: Option<String>,
     /// Take the body as it is, without fitting it to the wearer

@@ -1,6 +1,6 @@
 //! The bodies for the layouts of `mocap-synth`: files of means over people that it draws.
 
-use std::path::Path;
+use std::{fmt::Write, path::Path};
 
 use mocap_core::geometry::distance;
 use mocap_synth::{Activity, Hands, Layout, Person, SynthParams, SyntheticTake};
@@ -23,7 +23,7 @@ fn written(layout: Layout) -> String {
         let words: Vec<&str> = line.split(' ').collect();
         let first = match words[0] {
             "name" => {
-                text += &format!("name {layout}\n");
+                writeln!(text, "name {layout}").unwrap();
                 continue;
             }
             "joint" | "marker" => 3,
