@@ -266,9 +266,37 @@ impl Normal {
         }
     }
 
+    /// The first half of a solution for three right-hand sides at once that are zero but in these rows, which hold all their
+    /// ancestors, from the leaves to the root.
+    pub(crate) fn half_solve_blocks(&self, rows: &[usize], x: &mut [Matrix]) {
+        for (k, &row) in rows.iter().enumerate() {
+            let start = self.starts[row];
+            lower_solve_columns(&self.factor[start], &mut x[k]);
+            let y = x[k];
+            let mut after = k;
+            for (at, &other) in self.chains[row].iter().enumerate().skip(1) {
+                // Both go towards the root.
+                while rows[after] != other {
+                    after += 1;
+                }
+                let c = &self.factor[start + at];
+                for (a, sums) in x[after].iter_mut().enumerate() {
+                    for (b, sum) in sums.iter_mut().enumerate() {
+                        *sum -= c[0][a] * y[0][b] + c[1][a] * y[1][b] + c[2][a] * y[2][b];
+                    }
+                }
+            }
+        }
+    }
+
     /// Solves with the factored matrix, in place.
     pub(crate) fn solve(&self, x: &mut [[f64; 3]]) {
         self.half_solve(x);
+        self.back_solve(x);
+    }
+
+    /// The second half of a solution, in place.
+    pub(crate) fn back_solve(&self, x: &mut [[f64; 3]]) {
         for row in 0..self.rows() {
             let start = self.starts[row];
             let mut y = x[row];
