@@ -156,7 +156,12 @@ impl Layout {
     }
 
     /// How a marker moves with each shared unknown that it depends on.
-    pub(super) fn slopes(&self, tree: &Tree, solver: &FrameSolver<'_>, anchor: usize) -> Vec<(usize, Matrix)> {
+    pub(super) fn slopes(
+        &self,
+        tree: &Tree,
+        solver: &FrameSolver<'_>,
+        anchor: usize,
+    ) -> Vec<(usize, Matrix)> {
         let placed = &solver.placed;
         let marker = &tree.anchors[anchor];
         let near = placed[marker.near].axes;

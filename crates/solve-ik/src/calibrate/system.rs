@@ -225,4 +225,3 @@ fn arms(
     );
     arms
 }
-
