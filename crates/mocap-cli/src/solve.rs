@@ -35,6 +35,7 @@ use crate::{
   mocap solve walk.c3d -o walk.bvh --plot walk.svg --animate film.svg --markers clean.c3d
 
   mocap solve walk.c3d -o walk.bvh --calibrate-on 1..600 --save-body subject.body
+  mocap solve walk.c3d -o walk.bvh --t-pose 1..60
   mocap solve jump.c3d -o jump.bvh --skeleton subject.body --no-calibration
   mocap solve jump.c3d -o jump.bvh --learn-from walk.c3d --motion walk.amc --skeleton subject.asf
 
@@ -49,6 +50,7 @@ A body file is text with one fact a line. Print one with --save-body, and change
   rigid  knee                          never turns
   spread knee 70 6 1 0 0               standard deviation in degrees about an axis, across it, the axis
   limit  knee -5 165                   degrees about that axis
+  t-pose knee 0 0 -20                  its turn in a T-pose: a rotation vector in degrees
   marker LKNE hips 0.05 -0.42 0 share knee 0.3 spread 0.03
   alias  LKNE L_Knee                   `L_Knee` of a take counts as `LKNE`")]
 pub(crate) struct Solve {
@@ -73,6 +75,9 @@ pub(crate) struct Solve {
     /// Draw an animation that browsers play (.svg)
     #[arg(long, value_name = "FILE")]
     animate: Option<PathBuf>,
+    /// Refuse markers that the body does not know, instead of leaving them out
+    #[arg(long)]
+    strict: bool,
     /// Axes of the written motion
     #[arg(long, value_enum, default_value = "y-up")]
     axes: Axes,
@@ -110,6 +115,10 @@ impl Solve {
         let file = self.read.read(&self.input)?;
         let take = file.take();
         let solver = self.body.solver(&file, &self.read)?;
+        if self.strict {
+            let checked = solver.check_markers(take);
+            checked.with_context(|| format!("cannot solve {}", self.input.display()))?;
+        }
         let progress = Progress::new("ik", self.json);
         let start = Instant::now();
         let solution = solver.solve_observed(take, &mut |report| progress.show(report));
@@ -125,7 +134,7 @@ impl Solve {
         self.write(format, &motion)?;
         let info = file.info();
         self.write_others(take, &solution, up, info.unit, info.first_frame)?;
-        self.tell(take, &solution, seconds);
+        self.tell(take, &solution, info.first_frame, seconds);
         Ok(())
     }
 
@@ -219,7 +228,7 @@ impl Solve {
         Ok(())
     }
 
-    fn tell(&self, take: &Take, solution: &Solution, seconds: f64) {
+    fn tell(&self, take: &Take, solution: &Solution, first_frame: i64, seconds: f64) {
         let shown: Vec<f64> =
             solution.residual_m.iter().copied().filter(|r| r.is_finite()).collect();
         let mean_mm = 1e3 * shown.iter().sum::<f64>() / shown.len().max(1) as f64;
@@ -228,7 +237,8 @@ impl Solve {
             .iter()
             .enumerate()
             .filter(|(_, r)| r.is_finite())
-            .max_by(|a, b| a.1.total_cmp(b.1));
+            .max_by(|a, b| a.1.total_cmp(b.1))
+            .map(|(t, residual)| (first_frame.saturating_add_unsigned(t as u64), residual));
         let frames = take.frames();
         let dark = frames - shown.len();
         if self.json {
@@ -248,7 +258,7 @@ impl Solve {
         say!("frames           {frames:>10}");
         say!("markers miss by  {mean_mm:>10.2} mm on average");
         if let Some((frame, residual)) = worst {
-            say!("at most          {:>10.2} mm in frame {} of the take", 1e3 * residual, frame + 1);
+            say!("at most          {:>10.2} mm in frame {frame}", 1e3 * residual);
         }
         if dark > 0 {
             say!("without markers  {dark:>10} frames: their poses are interpolated");
@@ -262,7 +272,10 @@ impl Solve {
                 solution.unmapped.iter().take(LISTED).map(String::as_str).collect::<Vec<_>>();
             let more = solution.unmapped.len().saturating_sub(LISTED);
             let more = if more > 0 { format!(", and {more} more") } else { String::new() };
-            say!("not on the body  {}{more}", listed.join(", "));
+            say!(
+                "not on the body  {}{more}: left out; a body file can place them",
+                listed.join(", ")
+            );
         }
         say!("wrote {} in {seconds:.1} s", self.output.output.display());
     }

@@ -23,6 +23,7 @@ mod worn;
 /// rigid  knee                          # never turns
 /// spread knee 70 6 1 0 0               # standard deviation in degrees about an axis, across it, the axis
 /// limit  knee -5 165                   # degrees about that axis
+/// t-pose knee 0 0 -20                  # its turn in a T-pose: a rotation vector in degrees
 /// marker LKNE hips 0.05 -0.42 0 share knee 0.3 spread 0.03
 /// alias  LKNE L_Knee                   # `L_Knee` of a take counts as `LKNE`
 /// ```
@@ -49,6 +50,8 @@ pub(crate) struct Habit {
     pub(crate) spread: [f64; 3],
     /// Least and largest turn about the first axis in radians.
     pub(crate) limits: [f64; 2],
+    /// Rotation vector of its turn in a T-pose, in radians.
+    pub(crate) t_pose: [f64; 3],
 }
 
 impl Habit {
@@ -57,6 +60,7 @@ impl Habit {
         axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
         spread: [1.0; 3],
         limits: [f64::NEG_INFINITY, f64::INFINITY],
+        t_pose: [0.0; 3],
     };
 
     /// Spread about an axis, and across it.

@@ -20,16 +20,19 @@ use mocap_core::{
 use crate::{
     IkError, IkParams,
     body::Body,
-    frame::Seen,
+    frame::{Seen, Ties},
     tree::{State, Tree},
 };
 
 mod layout;
 mod system;
 
+pub(crate) use layout::ALIKE;
 use layout::Layout;
 use system::System;
 
+/// How far from a pose that they are told to take people stand, as a standard deviation in radians.
+const POSE_RAD: f64 = 0.07;
 /// Steps at most, and the share of the cost below which a step is the last.
 const STEPS: usize = 25;
 const ENOUGH: f64 = 1e-5;
@@ -39,6 +42,30 @@ const ENOUGH: f64 = 1e-5;
 pub(crate) struct Sample {
     pub(crate) seen: Vec<Seen>,
     pub(crate) state: State,
+    /// How its joints are turned, where that is known.
+    pub(crate) pose: Option<State>,
+}
+
+/// Weights of the turns of a pose that is known, and of one that is not.
+struct Firmness {
+    known: Vec<f64>,
+    free: Vec<f64>,
+}
+
+impl Firmness {
+    fn of(tree: &Tree) -> Self {
+        let mut known = vec![POSE_RAD.powi(-2); tree.len()];
+        // Where the body faces is no part of a pose.
+        known[0] = 0.0;
+        Self { known, free: vec![0.0; tree.len()] }
+    }
+
+    fn ties<'a>(&'a self, sample: &'a Sample) -> Ties<'a> {
+        match &sample.pose {
+            Some(pose) => Ties { target: pose, shift: 0.0, turns: &self.known },
+            None => Ties { target: &sample.state, shift: 0.0, turns: &self.free },
+        }
+    }
 }
 
 /// How a calibration ended.

@@ -30,8 +30,11 @@ pub(crate) fn diverse(scout: &Scout, sight: &Sight, count: usize) -> Vec<Sample>
             .max_by(|&a, &b| distance[a].total_cmp(&distance[b]).then(b.cmp(&a)));
     }
     chosen.sort_unstable();
-    let sample =
-        |k: usize| Sample { seen: sight.at(frame(k)).to_vec(), state: scout.states[k].clone() };
+    let sample = |k: usize| Sample {
+        seen: sight.at(frame(k)).to_vec(),
+        state: scout.states[k].clone(),
+        pose: None,
+    };
     chosen.into_iter().map(sample).collect()
 }
 

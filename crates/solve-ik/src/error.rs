@@ -58,7 +58,7 @@ pub enum IkError {
     /// Labels of which the map knows none, or too few on the root.
     #[error(
         "the marker map of `{body}` finds {found} markers of the take on the joint `{root}`, and three are \
-         needed to tell where the body is: {wanted}; label them, add their names as `alias` lines to a \
+         needed to tell where the body is: {wanted}; the take has {labels}; label them, add their names as `alias` lines to a \
          body file, or name another body with --skeleton"
     )]
     RootMarkers {
@@ -70,6 +70,19 @@ pub enum IkError {
         found: usize,
         /// Markers of the root that the body knows.
         wanted: String,
+        /// The first labels of the take.
+        labels: String,
+    },
+    /// Labels that the map does not know, where every marker has to be on the body.
+    #[error(
+        "the marker map of `{body}` does not know {labels}; say where they sit in `marker` lines of a body file, or which \
+         markers they are in `alias` lines; without --strict they are left out"
+    )]
+    Unmapped {
+        /// The body.
+        body: String,
+        /// The labels.
+        labels: String,
     },
     /// No frame shows three markers of the root together.
     #[error(
@@ -115,6 +128,27 @@ pub enum IkError {
     Apart {
         /// Root mean square distance of a marker from its joint, in metres.
         rms_m: f64,
+    },
+    /// Frames of a T-pose in which the wearer moves.
+    #[error(
+        "marker `{marker}` moves by {moves_m:.2} m in these frames; name frames in which the wearer stands still"
+    )]
+    NotStill {
+        /// The marker that moves most.
+        marker: String,
+        /// Root mean square distance from its mean, in metres.
+        moves_m: f64,
+    },
+    /// Frames that are no T-pose.
+    #[error(
+        "marker `{marker}` lies {off_m:.2} m from where a T-pose would have it; name frames in which the wearer stands with \
+         legs straight and arms straight out to the sides, or fit the body on frames that differ with --calibrate-on"
+    )]
+    NotTPose {
+        /// The marker that is farthest from there.
+        marker: String,
+        /// Its distance in metres.
+        off_m: f64,
     },
     /// A take without frames.
     #[error("the take has no frame; there is nothing to solve")]

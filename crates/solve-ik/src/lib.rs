@@ -15,6 +15,7 @@ mod sight;
 mod size;
 mod solver;
 mod start;
+mod template;
 mod track;
 mod tree;
 

@@ -4,7 +4,7 @@ use std::{
 };
 
 use mocap_core::{
-    IterReport, Motion, MotionSolver, Skeleton, SolveError, Solved, Take, Termination,
+    IterReport, MarkerSet, Motion, MotionSolver, Skeleton, SolveError, Solved, Take, Termination,
     geometry::dot,
 };
 use ndarray::{Array3, s};
@@ -117,6 +117,23 @@ impl IkSolver {
         self.calibrate(&Take::from_positions(Arc::clone(take.markers()), take.rate_hz(), part)?)
     }
 
+    /// Refuses a take with markers that the body's map does not know. Solving leaves them out, and
+    /// [`Solution::unmapped`] names them.
+    ///
+    /// # Errors
+    /// [`IkError::Unmapped`] with their labels, and [`IkError::TwoLabels`].
+    pub fn check_markers(&self, take: &Take) -> Result<(), IkError> {
+        let mapped = self.body.columns(take.markers())?;
+        let unknown: Vec<&str> = (0..take.marker_count())
+            .filter(|&m| !mapped.contains(&Some(m)))
+            .map(|m| take.markers().name(m))
+            .collect();
+        if unknown.is_empty() {
+            return Ok(());
+        }
+        Err(IkError::Unmapped { body: self.body.name.clone(), labels: listed(unknown) })
+    }
+
     /// Solves every frame and tells `observer` of finished ones, which may stop the work; frames that are left
     /// keep the pose of the nearest frame that was looked at before.
     ///
@@ -144,12 +161,7 @@ impl IkSolver {
         if take.frames() == 0 {
             return Err(IkError::NoFrames);
         }
-        let columns = self.body.columns(take.markers())?;
-        // A marker that is never seen says nothing of its joint.
-        let is_seen = |column: usize| (0..take.frames()).any(|t| take.is_observed(t, column));
-        let columns: Vec<Option<usize>> =
-            columns.into_iter().map(|c| c.filter(|&c| is_seen(c))).collect();
-        self.check_root(&columns)?;
+        let columns = self.columns(take)?;
         let size = size::size(&self.body, &columns, take);
         let mut template = self.body.clone();
         if self.params.calibration_rounds > 0 {
@@ -180,11 +192,22 @@ impl IkSolver {
         Ok(Ready { body, tree, sight, scout, rounds })
     }
 
-    fn root(&self) -> &str {
+    /// Column of each marker of the body that the take shows.
+    pub(crate) fn columns(&self, take: &Take) -> Result<Vec<Option<usize>>, IkError> {
+        let columns = self.body.columns(take.markers())?;
+        // A marker that is never seen says nothing of its joint.
+        let is_seen = |column: usize| (0..take.frames()).any(|t| take.is_observed(t, column));
+        let columns: Vec<Option<usize>> =
+            columns.into_iter().map(|c| c.filter(|&c| is_seen(c))).collect();
+        self.check_root(&columns, take.markers())?;
+        Ok(columns)
+    }
+
+    pub(crate) fn root(&self) -> &str {
         &self.body.skeleton.joints()[0].name
     }
 
-    fn check_root(&self, columns: &[Option<usize>]) -> Result<(), IkError> {
+    fn check_root(&self, columns: &[Option<usize>], markers: &MarkerSet) -> Result<(), IkError> {
         let tree = Tree::new(&self.body, columns);
         let found = tree.anchors.iter().filter(|a| a.is_on_root()).count();
         if found >= 3 {
@@ -199,7 +222,19 @@ impl IkSolver {
             root: self.root().to_owned(),
             found,
             wanted: wanted.join(", "),
+            labels: listed((0..markers.len()).map(|m| markers.name(m))),
         })
+    }
+}
+
+/// The first labels, and how many more there are.
+fn listed<'a>(labels: impl IntoIterator<Item = &'a str>) -> String {
+    const LISTED: usize = 8;
+    let labels: Vec<&str> = labels.into_iter().collect();
+    let first = labels[..labels.len().min(LISTED)].join(", ");
+    match labels.len().saturating_sub(LISTED) {
+        0 => first,
+        more => format!("{first} and {more} more"),
     }
 }
 

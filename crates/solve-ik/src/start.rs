@@ -46,7 +46,7 @@ fn levels(tree: &Tree) -> Vec<usize> {
 }
 
 /// The rest pose, carried to the markers of the root. Implements [Kabsch76], by quaternions.
-fn root_fit(tree: &Tree, seen: &[Seen]) -> Option<State> {
+pub(crate) fn root_fit(tree: &Tree, seen: &[Seen]) -> Option<State> {
     let on_root = seen.iter().filter_map(|&(anchor, at)| {
         let anchor = &tree.anchors[anchor as usize];
         anchor.is_on_root().then_some((anchor.place, at))

@@ -28,10 +28,17 @@ pub(crate) struct BodyArgs {
     /// The motion of that take (.amc, .bvh); the skeleton of an .amc is the .asf beside it, or --skeleton
     #[arg(long, value_name = "FILE", requires = "learn_from")]
     motion: Option<PathBuf>,
-    /// Fit the body on these frames alone, both included, as the file counts them: a T-pose (`1`) or, better, a range of motion
-    /// (`1..600`); poses that differ tell where joints are
+    /// Fit the body on these frames alone, both included, as the file counts them: a range of motion (`1..600`); poses
+    /// that differ tell where joints are
     #[arg(long, value_name = "A..B", conflicts_with_all = ["learn_from", "no_calibration"])]
     calibrate_on: Option<String>,
+    /// Fit the body on these frames alone, in which the wearer stands still with legs straight and arms straight out to the
+    /// sides (`t-pose` lines of a body file say how joints are turned then)
+    #[arg(
+        long, value_name = "A..B",
+        conflicts_with_all = ["learn_from", "no_calibration", "calibrate_on"]
+    )]
+    t_pose: Option<String>,
     /// Take the body as it is, without fitting it to the wearer
     #[arg(long)]
     no_calibration: bool,
@@ -59,10 +66,16 @@ impl BodyArgs {
             return Ok(IkSolver::new(body, as_it_is)?);
         }
         let solver = IkSolver::new(body, IkParams::default())?;
-        let Some(range) = &self.calibrate_on else { return Ok(solver) };
+        let Some(range) = self.calibrate_on.as_ref().or(self.t_pose.as_ref()) else {
+            return Ok(solver);
+        };
         let range = if range.contains("..") { range.clone() } else { format!("{range}..{range}") };
         let chosen = frames(&range, file.info().first_frame, take)?;
-        let body = solver.calibrate_on(take, chosen);
+        let body = if self.t_pose.is_some() {
+            solver.calibrate_in_t_pose(take, chosen)
+        } else {
+            solver.calibrate_on(take, chosen)
+        };
         let body = body.with_context(|| format!("cannot fit the body on frames {range}"))?;
         Ok(IkSolver::new(body, as_it_is)?)
     }

@@ -60,6 +60,9 @@ fn what_cannot_be_solved_is_refused_before_anything_is_written() {
         ("solve gap.csv -o out.bvh --learn-from walk.csv", "--motion"),
         ("solve gap.csv -o out.bvh --calibrate-on 0..9", "do not lie in the take's 1..200"),
         ("solve gap.csv -o out.bvh --calibrate-on 1..9 --no-calibration", "cannot be used with"),
+        ("solve gap.csv -o out.bvh --t-pose 1..9 --calibrate-on 1..9", "cannot be used with"),
+        ("solve gap.csv -o out.bvh --t-pose 1..200", "stands still"),
+        ("solve gap.csv -o out.bvh --t-pose 1", "arms straight out to the sides"),
     ] {
         let error = bench.fails(line);
         assert!(error.contains(words), "{line}: {error}");
@@ -68,6 +71,20 @@ fn what_cannot_be_solved_is_refused_before_anything_is_written() {
     std::fs::write(bench.path("dots.csv"), "a-x,a-y,a-z\n1,2,3\n2,3,4\n").unwrap();
     let error = bench.fails("solve dots.csv -o out.bvh");
     assert!(error.contains("cannot solve dots.csv") && error.contains("LFWT"), "{error}");
+    assert!(error.contains("the take has a;"), "{error}");
+}
+
+#[test]
+fn markers_that_are_not_on_the_body_are_named() {
+    let bench = Bench::with_gap("csv");
+    let text = String::from_utf8(bench.read("gap.csv")).unwrap();
+    std::fs::write(bench.path("hat.csv"), text.replace("LFHD", "HAT")).unwrap();
+    let told = bench.ok("solve hat.csv -o out.bvh");
+    assert!(told.contains("not on the body") && told.contains("HAT"), "{told}");
+    let error = bench.fails("solve hat.csv -o strict.bvh --strict");
+    assert!(error.contains("does not know HAT") && error.contains("`alias` lines"), "{error}");
+    assert!(!exists(&bench.path("strict.bvh")));
+    bench.ok("solve gap.csv -o strict.bvh --strict");
 }
 
 #[test]

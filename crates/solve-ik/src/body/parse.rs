@@ -60,7 +60,12 @@ impl Reader {
                 let joint = self.find(name)?;
                 let habit = Habit::about(three(axis)?, angle(along)?, angle(across)?);
                 let habit = habit.ok_or("an axis has a direction")?;
-                self.habits[joint] = Habit { rigid: self.habits[joint].rigid, ..habit };
+                let Habit { rigid, limits, t_pose, .. } = self.habits[joint];
+                self.habits[joint] = Habit { rigid, limits, t_pose, ..habit };
+            }
+            ["t-pose", name, turn @ ..] => {
+                let joint = self.find(name)?;
+                self.habits[joint].t_pose = three(turn)?.map(f64::to_radians);
             }
             ["limit", name, low, high] => {
                 let joint = self.find(name)?;
@@ -84,6 +89,7 @@ impl Reader {
                 return Err(
                     "a line is `name TEXT`, `joint NAME`, `joint NAME PARENT X Y Z`, `rigid JOINT`, \
                             `spread JOINT DEGREES`, `spread JOINT ALONG ACROSS X Y Z`, `limit JOINT LOW HIGH`, \
+                            `t-pose JOINT X Y Z`, \
                             `marker NAME JOINT X Y Z [share JOINT SHARE] [spread METRES]` or `alias NAME OTHER…`",
                 );
             }

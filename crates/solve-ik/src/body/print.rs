@@ -46,6 +46,9 @@ fn print_habit(f: &mut fmt::Formatter<'_>, joint: &str, habit: &Habit) -> fmt::R
     if low.is_finite() && high.is_finite() {
         writeln!(f, "limit {joint} {low:.6} {high:.6}")?;
     }
+    if habit.t_pose.iter().any(|angle| angle.abs() > 0.0) {
+        writeln!(f, "t-pose {joint} {}", three(habit.t_pose.map(f64::to_degrees)))?;
+    }
     Ok(())
 }
 

@@ -3,11 +3,11 @@
 use mocap_core::geometry::{add, dot, scale, sub, times};
 use rayon::prelude::*;
 
-use super::Sample;
+use super::{Firmness, Sample};
 use crate::{
     IkParams,
     body::Body,
-    frame::{FrameSolver, Ties},
+    frame::FrameSolver,
     tree::{Anchor, Tree},
 };
 
@@ -15,7 +15,7 @@ pub(super) type Matrix = [[f64; 3]; 3];
 
 /// Frames that say as much as one about where a joint or a marker is: skin slides with the pose, and so the markers of
 /// many frames miss in the same way.
-const ALIKE: f64 = 20.0;
+pub(crate) const ALIKE: f64 = 20.0;
 /// Spread of a joint's place across its bone over that along it: people differ in lengths rather than in directions.
 const ACROSS: f64 = 0.25;
 
@@ -77,7 +77,9 @@ impl Layout {
             let turns = tree.movers(anchor).map(|joint| joint + 1);
             let rows: Vec<usize> = turns.chain([0]).collect();
             for block in self.blocks(tree, index) {
-                rows.iter().for_each(|row| is_used[block * self.row_count + row] = true);
+                for row in &rows {
+                    is_used[block * self.row_count + row] = true;
+                }
             }
         }
         for block in 0..self.expected.len() {
@@ -141,15 +143,12 @@ impl Layout {
                 dot(off, times(&self.expected[block].1, off))
             })
             .sum();
-        let free = vec![0.0; tree.len()];
+        let weights = Firmness::of(tree);
         let costs: Vec<f64> = samples
             .par_iter()
             .map_init(
                 || FrameSolver::new(tree, params),
-                |solver, sample| {
-                    let ties = Ties { target: &sample.state, shift: 0.0, turns: &free };
-                    solver.cost(&sample.state, &sample.seen, &ties)
-                },
+                |solver, sample| solver.cost(&sample.state, &sample.seen, &weights.ties(sample)),
             )
             .collect();
         prior + costs.iter().sum::<f64>()

@@ -3,13 +3,9 @@
 use mocap_core::geometry::{add, cross, scale, sub, times, transposed};
 use rayon::prelude::*;
 
-use super::{Sample, layout::Layout};
+use super::{Firmness, Sample, layout::Layout};
 use crate::{
-    IkParams,
-    calibrate::layout::Matrix,
-    dense::Cholesky,
-    frame::{FrameSolver, Ties},
-    normal::Normal,
+    IkParams, calibrate::layout::Matrix, dense::Cholesky, frame::FrameSolver, normal::Normal,
     tree::Tree,
 };
 
@@ -121,9 +117,11 @@ impl System {
                 }
             }
             frame.normal.back_solve(&mut step);
-            step.iter_mut().for_each(|s| *s = scale(-1.0, *s));
+            for s in &mut step {
+                *s = scale(-1.0, *s);
+            }
             tree.place(&sample.state, &mut solver.placed);
-            Sample { seen: sample.seen.clone(), state: solver.moved(&sample.state, &step) }
+            Sample { state: solver.moved(&sample.state, &step), ..sample.clone() }
         });
         (layout.moved(tree, &self.step), moved.collect())
     }
@@ -139,9 +137,9 @@ fn eliminate(
     damping: f64,
     sums: &mut Sums,
 ) -> Option<FrameSystem> {
-    let free = vec![0.0; tree.len()];
+    let weights = Firmness::of(tree);
     let mut solver = FrameSolver::new(tree, params);
-    let ties = Ties { target: &sample.state, shift: 0.0, turns: &free };
+    let ties = weights.ties(sample);
     solver.cost(&sample.state, &sample.seen, &ties);
     solver.linearise(&sample.state, &sample.seen, &ties);
     let mut coupling = vec![ZERO; layout.starts[layout.expected.len()]];

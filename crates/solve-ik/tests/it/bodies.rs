@@ -8,7 +8,7 @@ use solve_ik::{Body, IkError};
 
 use crate::worn::{record, synthetic_body};
 
-const SMALL: &str = "joint hips\njoint knee hips 0 -0.4 0\nspread knee 70 6 1 0 0\nlimit knee -5 160\n\
+const SMALL: &str = "joint hips\njoint knee hips 0 -0.4 0\nspread knee 70 6 1 0 0\nlimit knee -5 160\nt-pose knee 0 0 -20\n\
     marker A hips 0.1 0 0\nmarker B hips 0 0 0.1 share knee 0.5\nalias B Bee\n";
 
 #[test]
@@ -26,7 +26,7 @@ fn a_written_body_is_read_back() {
 fn a_wrong_line_is_named() {
     let broken = |line: &str, expected: &str| {
         let error = Body::parse(&format!("{SMALL}{line}\n"), "my.body").unwrap_err();
-        let IkError::BodyLine { line: 8, ref file, rule, .. } = error else { panic!("{error}") };
+        let IkError::BodyLine { line: 9, ref file, rule, .. } = error else { panic!("{error}") };
         assert_eq!(file, "my.body");
         assert!(rule.contains(expected), "{line}: {error}");
     };
@@ -39,6 +39,7 @@ fn a_wrong_line_is_named() {
     broken("spread knee 0", "above 0");
     broken("spread knee 10 5 0 0 0", "direction");
     broken("limit knee 9 9", "below");
+    broken("t-pose knee 20", "three numbers");
     broken("marker a hips 0 0 0", "unique");
     broken("marker C hips 0 0 0 share knee 1", "between 0 and 1");
     broken("marker C hips 0 0 0 spread -1", "above 0");

@@ -28,6 +28,7 @@ fn written(layout: Layout) -> String {
             }
             "joint" | "marker" => 3,
             "spread" => 4,
+            "t-pose" => 2,
             _ => words.len(),
         };
         let mut words: Vec<String> = words.into_iter().map(str::to_owned).collect();

@@ -7,4 +7,5 @@ mod fill;
 mod real;
 mod refusals;
 mod synthetic;
+mod t_pose;
 mod worn;

@@ -22,6 +22,7 @@ fn labels_that_the_map_does_not_know_are_refused_or_named() {
     assert!(matches!(error, IkError::RootMarkers { found: 0, .. }));
     let text = error.to_string();
     assert!(text.contains("LFWT, RFWT, LBWT, RBWT") && text.contains("alias"), "{text}");
+    assert!(text.contains("the take has *0, *1, *2, *3;"), "{text}");
     let two = named(&["LFWT", "RFWT", "C7"]);
     assert!(matches!(
         solver(Body::cmu_41()).solve(&two),
@@ -34,6 +35,8 @@ fn labels_that_the_map_does_not_know_are_refused_or_named() {
     let other = named(&["kim:lasi", "kim:rasi", "kim:lpsi", "kim:rpsi", "kim:hat"]);
     let solution = solver(Body::cmu_41()).solve(&other).unwrap();
     assert_eq!(solution.unmapped, ["kim:hat"]);
+    let error = solver(Body::cmu_41()).check_markers(&other).unwrap_err();
+    assert!(matches!(&error, IkError::Unmapped { labels, .. } if labels == "kim:hat"), "{error}");
     // An alias and the name it stands for are one marker; the name wins.
     let both = named(&["LASI", "LFWT", "RFWT", "LBWT"]);
     assert_eq!(solver(Body::cmu_41()).solve(&both).unwrap().unmapped, ["LASI"]);

@@ -151,6 +151,13 @@ fn body(
         let fits = |part: &str| joint.name.contains(part);
         let spread = SPREADS.iter().find(|(part, _)| fits(part)).unwrap().1;
         writeln!(text, "spread {} {spread}", joint.name).unwrap();
+        // Arms hang in the rest pose.
+        if let Some(turn) = [("left_shoulder", 90), ("right_shoulder", -90)]
+            .iter()
+            .find_map(|(name, turn)| (joint.name == *name).then_some(turn))
+        {
+            writeln!(text, "t-pose {} {turn} 0 0", joint.name).unwrap();
+        }
     }
     for (m, Attachment { label, joints: [near, far], share, .. }) in
         like.attachments().iter().enumerate()
