@@ -6,7 +6,9 @@ use std::{
 
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
-use mocap_core::{MarkerKnowledge, Motion, RigidTransform, Rotation, Take, UpAxis};
+use mocap_core::{
+    MarkerKnowledge, Motion, RigidTransform, Rotation, Take, UpAxis, geometry::distance,
+};
 use mocap_io::{Format, LengthUnit, encode_markers, encode_motion};
 use mocap_report::{FigureFormat, MotionPlot, animate_motion, plot_motion};
 use serde_json::{Value, json};
@@ -238,14 +240,16 @@ impl Solve {
             .enumerate()
             .filter(|(_, r)| r.is_finite())
             .max_by(|a, b| a.1.total_cmp(b.1))
-            .map(|(t, residual)| (first_frame.saturating_add_unsigned(t as u64), residual));
+            .map(|(t, residual)| (t, first_frame.saturating_add_unsigned(t as u64), residual));
+        let culprit = worst.and_then(|(t, ..)| farthest(take, solution, t));
         let frames = take.frames();
         let dark = frames - shown.len();
         if self.json {
             let object = json!({
                 "frames": frames, "joints": solution.motion.skeleton().joints().len(), "seconds": seconds,
                 "mean_residual_mm": mean_mm,
-                "largest_residual_mm": worst.map(|(_, r)| 1e3 * r), "largest_residual_frame": worst.map(|(t, _)| t),
+                "largest_residual_mm": worst.map(|(.., r)| 1e3 * r), "largest_residual_frame": worst.map(|(_, frame, _)| frame),
+                "largest_residual_marker": culprit.map(|(name, _)| name),
                 "frames_without_markers": dark, "unconverged_frames": solution.unconverged,
                 "unmapped_markers": solution.unmapped, "termination": solution.termination.as_str(),
                 "calibration": solution.calibration.iter().map(|round| json!({
@@ -257,8 +261,13 @@ impl Solve {
         }
         say!("frames           {frames:>10}");
         say!("markers miss by  {mean_mm:>10.2} mm on average");
-        if let Some((frame, residual)) = worst {
-            say!("at most          {:>10.2} mm in frame {frame}", 1e3 * residual);
+        if let Some((_, frame, residual)) = worst {
+            let most = culprit.map(|(name, off)| format!(", {name} by {:.0} mm", 1e3 * off));
+            say!(
+                "at most          {:>10.2} mm in frame {frame}{}",
+                1e3 * residual,
+                most.unwrap_or_default()
+            );
         }
         if dark > 0 {
             say!("without markers  {dark:>10} frames: their poses are interpolated");
@@ -279,6 +288,16 @@ impl Solve {
         }
         say!("wrote {} in {seconds:.1} s", self.output.output.display());
     }
+}
+
+/// The marker that misses most in a frame, and by how much in metres.
+fn farthest<'a>(take: &'a Take, solution: &Solution, frame: usize) -> Option<(&'a str, f64)> {
+    let off = |marker: usize| {
+        let expected = std::array::from_fn(|a| solution.markers[(frame, marker, a)]);
+        let off = distance(take.position(frame, marker)?, expected);
+        off.is_finite().then(|| (take.markers().name(marker), off))
+    };
+    (0..take.marker_count()).filter_map(off).max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 pub(crate) fn is_json(path: &Path) -> bool {

@@ -13,6 +13,8 @@ fn a_gappy_walk_becomes_motion_in_every_format() {
     );
     assert_eq!(report["frames"], 200);
     assert!(report["mean_residual_mm"].as_f64().unwrap() < 8.0, "{report}");
+    assert!((1..=200).contains(&report["largest_residual_frame"].as_i64().unwrap()), "{report}");
+    assert!(report["largest_residual_marker"].is_string(), "{report}");
     let clean = bench.json("inspect clean.trc --json");
     assert_eq!(clean["gaps"].as_array().map(Vec::len), Some(0), "{clean}");
     for (name, word) in [("still.svg", "<polyline"), ("film.svg", "<animate ")] {

@@ -3,6 +3,7 @@
 
 mod bodies;
 mod built_in;
+mod equivariance;
 mod fill;
 mod real;
 mod refusals;

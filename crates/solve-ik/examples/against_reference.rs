@@ -1,0 +1,200 @@
+//! Where a solve and the capture software's own motion differ: how much of it is one offset on each bone, how far each of
+//! the two is from the markers, and whether other subjects' references tell where this one has its joints.
+//!
+//! ```sh
+//! MOCAP_DATA=… cargo run --release -p solve-ik --example against_reference
+//! ```
+#![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a tool for developers")]
+
+use std::{collections::HashMap, path::Path};
+
+use mocap_core::{
+    JointFrames, Motion, RigidTransform, Rotation, Take,
+    geometry::{add, distance, norm, scale, sub},
+};
+use mocap_io::{MarkerFile, MotionFile, ReadOptions};
+use solve_ik::{Body, IkParams, IkSolver, Solution};
+
+const TRIALS: [(&str, &str); 5] =
+    [("02_01", "02"), ("127_07", "127"), ("05_13", "05"), ("135_02", "135"), ("135_07", "135")];
+
+const JOINTS: [&str; 20] = [
+    "root",
+    "upperback",
+    "thorax",
+    "lowerneck",
+    "upperneck",
+    "head",
+    "lfemur",
+    "ltibia",
+    "lfoot",
+    "rfemur",
+    "rtibia",
+    "rfoot",
+    "lhumerus",
+    "lradius",
+    "lwrist",
+    "lhand",
+    "rhumerus",
+    "rradius",
+    "rwrist",
+    "rhand",
+];
+
+/// Joints that never turn in the reference, and hinges.
+const STIFF: &str = "spread ltibia 70 0.5 0.940 0.342 0\nspread rtibia 70 0.5 0.940 -0.342 0\n\
+    spread lradius 70 0.5 0 -0.866 0.5\nspread rradius 70 0.5 0 0.866 -0.5\n\
+    spread lwrist 60 0.5 1 0 0\nspread rwrist 60 0.5 1 0 0\nspread lhand 1 25 1 0 0\n\
+    spread rhand 1 25 1 0 0\nrigid lclavicle\nrigid rclavicle\n";
+
+fn main() {
+    let Some(folder) = mocap_testkit::recording("cmu/paired") else { return };
+    println!("JPE in cm: all of it / its constant part, on the reference's bone / what varies");
+    let mut table: Vec<Vec<String>> = JOINTS.iter().map(|j| vec![format!("| {j}")]).collect();
+    table.push(vec!["| mean".into()]);
+    for (trial, subject) in TRIALS {
+        let Some(take) = markers(trial, &folder) else { continue };
+        let truth = reference(trial, subject, &folder);
+        let frames = frames(&truth);
+        let known = Body::cmu_41().on(truth.skeleton().clone()).unwrap();
+        let solution = IkSolver::new(known, IkParams::default()).unwrap().solve(&take).unwrap();
+        let mut sums = [0.0; 3];
+        for (joint, row) in JOINTS.iter().zip(&mut table) {
+            let parts = parts(joint, &truth, &frames, &solution);
+            row.push(format!("{:.1} / {:.1} / {:.1}", parts[0], parts[1], parts[2]));
+            (0..3).for_each(|k| sums[k] += parts[k] / JOINTS.len() as f64);
+        }
+        table[JOINTS.len()].push(format!("{:.1} / {:.1} / {:.1}", sums[0], sums[1], sums[2]));
+        own_model(trial, &take, &truth, &frames);
+    }
+    held_out(&folder);
+    println!("| joint | {} |", TRIALS.map(|t| t.0).join(" | "));
+    println!("|---|---|---|---|---|---|");
+    for row in table {
+        println!("{} |", row.join(" | "));
+    }
+}
+
+/// Places of markers as the references of the other subjects have them on average, for a subject who is none of them.
+fn held_out(folder: &Path) {
+    let learn = |(trial, subject): (&str, &'static str)| {
+        let take = markers(trial, folder)?;
+        let body = Body::cmu_41().worn(&take, &reference(trial, subject, folder)).unwrap();
+        // Only markers that the take has were learnt.
+        let is_worn =
+            |name: &str| (0..take.marker_count()).any(|m| take.markers().split(m).1 == name);
+        let places: HashMap<String, [f64; 3]> = body
+            .places()
+            .filter(|(name, ..)| is_worn(name))
+            .map(|(name, _, place)| (name.to_owned(), place))
+            .collect();
+        Some((subject, places))
+    };
+    // One take a subject.
+    let learnt: Vec<_> = TRIALS[..4].iter().copied().filter_map(learn).collect();
+    for (trial, subject) in TRIALS {
+        let Some(take) = markers(trial, folder) else { continue };
+        let truth = reference(trial, subject, folder);
+        let frames = frames(&truth);
+        let mut text = String::new();
+        for line in Body::cmu_41().to_string().lines() {
+            let mut words: Vec<String> = line.split(' ').map(str::to_owned).collect();
+            if words[0] == "marker" {
+                let others = learnt.iter().filter(|(s, _)| *s != subject);
+                let places: Vec<[f64; 3]> =
+                    others.filter_map(|(_, places)| places.get(&words[1]).copied()).collect();
+                let mean =
+                    scale(1.0 / places.len() as f64, places.iter().copied().fold([0.0; 3], add));
+                if !places.is_empty() {
+                    words.splice(3..6, mean.map(|c| c.to_string()));
+                }
+            }
+            text += &words.join(" ");
+            text.push('\n');
+        }
+        let body = Body::parse(&text, "others").unwrap();
+        let known = body.clone().on(truth.skeleton().clone()).unwrap();
+        let off = [body, known].map(|body| {
+            let solution = IkSolver::new(body, IkParams::default()).unwrap().solve(&take).unwrap();
+            let off = JOINTS.iter().map(|joint| parts(joint, &truth, &frames, &solution)[0]);
+            off.sum::<f64>() / JOINTS.len() as f64
+        });
+        println!(
+            "{trial}: with places learnt from the other subjects' references JPE {:.2} cm, {:.2} with its bones",
+            off[0], off[1]
+        );
+    }
+}
+
+/// The solver with all of the reference's model: its bones, its stiff joints, and its markers where they suit it best.
+fn own_model(trial: &str, take: &Take, truth: &Motion, frames: &[JointFrames]) {
+    let text = Body::cmu_41().to_string();
+    let cut = text.find("marker ").unwrap();
+    let stiff = Body::parse(&format!("{}{STIFF}{}", &text[..cut], &text[cut..]), trial).unwrap();
+    let body = stiff.worn(take, truth).unwrap();
+    let places: Vec<(String, usize, [f64; 3])> =
+        body.places().map(|(name, joint, place)| (name.to_owned(), joint, place)).collect();
+    let params = IkParams { calibration_rounds: 0, ..IkParams::default() };
+    let solution = IkSolver::new(body, params).unwrap().solve(take).unwrap();
+    let (mut theirs, mut ours, mut count) = (0.0, 0.0, 0.0);
+    for (name, joint, place) in places {
+        let Some(m) = (0..take.marker_count()).find(|&m| take.markers().split(m).1 == name) else {
+            continue;
+        };
+        for (t, frame) in frames.iter().enumerate() {
+            let Some(at) = take.position(t, m) else { continue };
+            let expected = add(frame.origins_m[joint], frame.rotations[joint].apply(place));
+            theirs += distance(expected, at).powi(2);
+            ours += distance(std::array::from_fn(|a| solution.markers[(t, m, a)]), at).powi(2);
+            count += 1.0;
+        }
+    }
+    let rms = |sum: f64| 1e3 * (sum / count).sqrt();
+    let off: f64 = JOINTS.iter().map(|joint| parts(joint, truth, frames, &solution)[0]).sum();
+    println!(
+        "{trial}: in its own model the reference misses the markers by {:.1} mm rms, and this solve by {:.1}, {:.2} cm away",
+        rms(theirs),
+        rms(ours),
+        off / JOINTS.len() as f64
+    );
+}
+
+/// Mean distance of a joint from the reference's in cm, the length of the mean difference as seen from the reference's bone, and
+/// the mean distance from there.
+fn parts(joint: &str, truth: &Motion, frames: &[JointFrames], solution: &Solution) -> [f64; 3] {
+    let find = |motion: &Motion| motion.skeleton().find(joint).unwrap();
+    let (a, b) = (find(&solution.motion), find(truth));
+    let skeleton = solution.motion.skeleton();
+    let local = |(pose, frame): (&mocap_core::Pose, &JointFrames)| {
+        let off = sub(skeleton.positions(pose).unwrap()[a], frame.origins_m[b]);
+        frame.rotations[b].inverse().apply(off)
+    };
+    let offs: Vec<[f64; 3]> = solution.motion.poses().iter().zip(frames).map(local).collect();
+    let share = 100.0 / offs.len() as f64;
+    let mean = scale(share / 100.0, offs.iter().copied().fold([0.0; 3], add));
+    let sum = |value: &dyn Fn(&[f64; 3]) -> f64| share * offs.iter().map(value).sum::<f64>();
+    [sum(&|off| norm(*off)), 100.0 * norm(mean), sum(&|off| distance(*off, mean))]
+}
+
+fn frames(motion: &Motion) -> Vec<JointFrames> {
+    let poses = motion.poses().iter();
+    poses.map(|pose| motion.skeleton().frames(pose).unwrap()).collect()
+}
+
+fn markers(trial: &str, folder: &Path) -> Option<Take> {
+    let file = folder.join(format!("{trial}.c3d"));
+    if file.exists() {
+        let read = MarkerFile::read(&file, &ReadOptions::default()).unwrap();
+        return Some(read.take().clone());
+    }
+    mocap_testkit::motion(trial)
+}
+
+/// The reference in the axes of the marker files: (z, x, y) of those of the AMC files.
+fn reference(trial: &str, subject: &str, folder: &Path) -> Motion {
+    let asf = folder.join(format!("{subject}.asf"));
+    let amc = folder.join(format!("{trial}.amc"));
+    let read = MotionFile::read(&amc, Some(&asf), &ReadOptions::default()).unwrap();
+    let rotation = Rotation::about([1.0; 3], std::f64::consts::TAU / 3.0);
+    read.motion().transformed(&RigidTransform { rotation, translation: [0.0; 3] }).unwrap()
+}
