@@ -57,7 +57,8 @@ fn main() {
         let truth = reference(trial, subject, &folder);
         let frames = frames(&truth);
         let known = Body::cmu_41().on(truth.skeleton().clone()).unwrap();
-        let solution = IkSolver::new(known, IkParams::default()).unwrap().solve(&take).unwrap();
+        let solution =
+            IkSolver::new(known.clone(), IkParams::default()).unwrap().solve(&take).unwrap();
         let mut sums = [0.0; 3];
         for (joint, row) in JOINTS.iter().zip(&mut table) {
             let parts = parts(joint, &truth, &frames, &solution);
@@ -66,6 +67,15 @@ fn main() {
         }
         table[JOINTS.len()].push(format!("{:.1} / {:.1} / {:.1}", sums[0], sums[1], sums[2]));
         own_model(trial, &take, &truth, &frames);
+        let misses = |later: isize, scale: f64| theirs(&take, &known, &frames, later, scale);
+        println!(
+            "{trial}: {:.1} mm as it is; a frame earlier or later {:.1} and {:.1}; a percent smaller or larger {:.1} and {:.1}",
+            misses(0, 1.0),
+            misses(-1, 1.0),
+            misses(1, 1.0),
+            misses(0, 1.01),
+            misses(0, 0.99)
+        );
     }
     held_out(&folder);
     println!("| joint | {} |", TRIALS.map(|t| t.0).join(" | "));
@@ -157,6 +167,27 @@ fn own_model(trial: &str, take: &Take, truth: &Motion, frames: &[JointFrames]) {
         rms(ours),
         off / JOINTS.len() as f64
     );
+}
+
+/// By how much the reference misses the markers, each at the place that suits it best, in mm (rms), if it is moved in time by
+/// some frames and the markers are scaled.
+fn theirs(take: &Take, body: &Body, frames: &[JointFrames], later: isize, by: f64) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for (name, joint, _) in body.places() {
+        let Some(m) = (0..take.marker_count()).find(|&m| take.markers().split(m).1 == name) else {
+            continue;
+        };
+        let local = |(t, frame): (usize, &JointFrames)| {
+            let at =
+                take.position(t.checked_add_signed(later).filter(|&t| t < take.frames())?, m)?;
+            Some(frame.rotations[joint].inverse().apply(sub(scale(by, at), frame.origins_m[joint])))
+        };
+        let places: Vec<[f64; 3]> = frames.iter().enumerate().filter_map(local).collect();
+        let mean = scale(1.0 / places.len() as f64, places.iter().copied().fold([0.0; 3], add));
+        sum += places.iter().map(|p| distance(*p, mean).powi(2)).sum::<f64>();
+        count += places.len() as f64;
+    }
+    1e3 * f64::sqrt(sum / count)
 }
 
 /// Mean distance of a joint from the reference's in cm, the length of the mean difference as seen from the reference's bone, and

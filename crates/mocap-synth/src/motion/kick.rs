@@ -1,9 +1,12 @@
-use super::{Choreography, LEAD_S};
+use super::{
+    Choreography,
+    script::{Bout, Script, Stance},
+};
 use crate::{
     body::Body,
-    curve::{Timeline, Wobble, ease, lerp},
+    curve::{Timeline, ease},
     dice::Dice,
-    math::{TAU, degrees, sin_cos},
+    math::degrees,
     rig::{Arm, FootTarget, Pivot, Posture, Tilt, pitched_ankle},
 };
 
@@ -44,81 +47,41 @@ const PACE_S: [f64; KEYS] = [0.34, 0.30, 0.17, 0.145, 0.17, 0.33, 0.36, 0.34, 0.
 
 /// Kicks with the right foot from one spot, one after the other.
 pub(crate) struct Kick {
-    kicks: Vec<Strike>,
-    heading: f64,
-    size: f64,
-    sway: [Wobble; 2],
-    arms: [Wobble; 2],
-    head: [Wobble; 2],
-}
-
-struct Strike {
-    start: f64,
-    end: f64,
-    aim: f64,
-    channels: Timeline<CHANNELS>,
-    /// When the left foot steps ahead and back.
-    step: [f64; 2],
-    back: [f64; 2],
+    stance: Stance,
+    kicks: Vec<Bout<CHANNELS>>,
 }
 
 impl Kick {
     pub(crate) fn new(body: &Body, seconds: f64, dice: &mut Dice) -> Self {
-        let size = body.leg() / 0.852;
-        let slow = |dice: &mut Dice, rms: f64| Wobble::new(dice, rms, 0.1, 0.7);
-        let mut kick = Self {
-            kicks: Vec::new(),
-            heading: dice.uniform(0.0, TAU),
-            size,
-            sway: [0, 1].map(|_| slow(dice, 0.005 * size)),
-            arms: [0, 1].map(|_| slow(dice, degrees(3.0))),
-            head: [0, 1].map(|_| slow(dice, degrees(4.0))),
-        };
-        // A take begins somewhere in a kick, never on a fixed pose.
-        let mut time = -LEAD_S - dice.uniform(0.0, 2.5);
-        while time < seconds + LEAD_S {
-            let strike = Strike::sample(time, size, dice);
-            time = strike.end;
-            kick.kicks.push(strike);
-        }
-        kick
-    }
-
-    /// A point seen from the spot between the feet.
-    fn at(&self, ahead: f64, left: f64) -> [f64; 2] {
-        let (s, c) = sin_cos(self.heading);
-        [c * ahead - s * left, s * ahead + c * left]
+        let stance = Stance::new(body, degrees(4.0), dice);
+        let kicks = Bout::all(seconds, dice, |start, dice| kick(start, stance.size, dice));
+        Self { stance, kicks }
     }
 
     fn feet(
         &self,
         body: &Body,
-        strike: &Strike,
+        kick: &Bout<CHANNELS>,
         time: f64,
         c: &[f64; CHANNELS],
     ) -> [FootTarget; 2] {
-        let half = 0.10 * self.size;
-        let share = |[from, to]: [f64; 2]| ease((time - from) / (to - from));
-        let arc = |[from, to]: [f64; 2]| {
-            let u = ((time - from) / (to - from)).clamp(0.0, 1.0);
-            let v = u * (1.0 - u);
-            64.0 * v * v * v
-        };
-        let stride = 0.56 * self.size * (share(strike.step) - share(strike.back));
-        let (out, home) = (arc(strike.step), arc(strike.back));
+        let Stance { size, heading, .. } = self.stance;
+        let half = 0.10 * size;
+        let stride = 0.56 * size * kick.stride(time);
+        let [out, home] = kick.arcs(time);
         let pitch = degrees(14.0) * home - degrees(6.0) * out;
         let pivot = if pitch > 0.0 { Pivot::Ball } else { Pivot::Heel };
-        let heading = self.heading + degrees(6.0);
-        let mut left = pitched_ankle(body, self.at(stride, half), heading, pitch, pivot);
-        left[2] += self.size * (0.09 * out + 0.06 * home);
-        let heading_r = self.heading - degrees(8.0);
+        let heading_l = heading + degrees(6.0);
+        let mut left = pitched_ankle(body, self.stance.at(stride, half), heading_l, pitch, pivot);
+        left[2] += size * (0.09 * out + 0.06 * home);
+        let heading_r = heading - degrees(8.0);
         // On the floor the foot turns about its ball; in the air the toes do not matter.
-        let flat = self.at(c[3], c[4] - half);
+        let flat = self.stance.at(c[3], c[4] - half);
         let mut right = pitched_ankle(body, flat, heading_r, c[19].max(0.0), Pivot::Ball);
         right[2] += c[5];
-        let grounded = 1.0 - ease(c[5] / (0.06 * self.size));
+        let grounded = 1.0 - ease(c[5] / (0.06 * size));
         [
-            FootTarget { ankle: left, heading, pitch, toe: 0.0 },
+            FootTarget { ankle: left, heading: heading_l, pitch, toe: 0.0 },
             FootTarget {
                 ankle: right,
                 heading: heading_r,
@@ -129,47 +92,33 @@ impl Kick {
     }
 }
 
-impl Strike {
-    fn sample(start: f64, size: f64, dice: &mut Dice) -> Self {
-        let mut time = start + dice.uniform(0.05, 0.35);
-        let pace = dice.around(0.94, 0.07);
-        let vigour: [f64; CHANNELS] = std::array::from_fn(|_| dice.around(1.0, 0.06));
-        let mut keys = vec![(start, Self::values(0, size, &vigour))];
-        for (key, length) in PACE_S.into_iter().enumerate() {
-            keys.push((time, Self::values(key, size, &vigour)));
-            time += pace * dice.around(length, 0.04);
-        }
-        keys.push((time, Self::values(0, size, &vigour)));
-        let (step, back) = ([keys[1].0 + 0.1, keys[3].0], [keys[9].0, keys[11].0 - 0.1]);
-        let aim = degrees(dice.jitter(5.0));
-        Self { start, end: time, aim, channels: Timeline::new(&keys), step, back }
+fn kick(start: f64, size: f64, dice: &mut Dice) -> Bout<CHANNELS> {
+    let mut time = start + dice.uniform(0.05, 0.35);
+    let pace = dice.around(0.94, 0.07);
+    let vigour = std::array::from_fn(|_| dice.around(1.0, 0.06));
+    let script = Script { rows: &SCRIPT, lengths: LENGTHS, size, vigour };
+    let mut keys = vec![(start, script.row(0))];
+    for (key, length) in PACE_S.into_iter().enumerate() {
+        keys.push((time, script.row(key)));
+        time += pace * dice.around(length, 0.04);
     }
-
-    /// One row of the script for this body, with this kick's vigour in every channel.
-    fn values(key: usize, size: f64, vigour: &[f64; CHANNELS]) -> [f64; CHANNELS] {
-        let rest = &SCRIPT[0];
-        std::array::from_fn(|n| {
-            let value = rest[n] + vigour[n] * (SCRIPT[key][n] - rest[n]);
-            if n < LENGTHS { value * size } else { degrees(value) }
-        })
-    }
+    keys.push((time, script.row(0)));
+    let (step, back) = ([keys[1].0 + 0.1, keys[3].0], [keys[9].0, keys[11].0 - 0.1]);
+    let aim = degrees(dice.jitter(5.0));
+    Bout { start, end: time, aim, channels: Timeline::new(&keys), step, back }
 }
 
 impl Choreography for Kick {
     fn posture(&self, body: &Body, time: f64) -> Posture {
-        let index = self.kicks.partition_point(|k| k.start <= time).saturating_sub(1);
-        let strike = &self.kicks[index];
-        let c = strike.channels.at(time);
-        let busy =
-            ease((time - strike.step[0]) / 0.4) * (1.0 - ease((time - strike.back[0]) / 0.5));
-        let aim = lerp(0.0, strike.aim, busy);
-        let [sway_x, sway_y] = [0, 1].map(|i| self.sway[i].at(time));
-        let [x, y] = self.at(c[0] + sway_x, c[1] + sway_y);
+        let kick = Bout::of(&self.kicks, time);
+        let Stance { heading, arms, head, .. } = &self.stance;
+        let c = kick.channels.at(time);
+        let [x, y] = self.stance.swayed(c[0], c[1], time);
         let arm = |i: usize, from: usize| Arm {
-            flexion: c[from] + self.arms[i].at(time),
+            flexion: c[from] + arms[i].at(time),
             abduction: c[from + 1],
             outward: degrees(-18.0),
-            elbow: c[from + 2] + 0.6 * self.arms[1 - i].at(time),
+            elbow: c[from + 2] + 0.6 * arms[1 - i].at(time),
             pronation: degrees(25.0),
             wrist: degrees(3.0),
             shrug: 0.10 * c[from + 1],
@@ -177,15 +126,15 @@ impl Choreography for Kick {
         };
         Posture {
             pelvis_m: [x, y, body.standing() - 0.012 * body.leg() + c[2]],
-            pelvis: Tilt { pitch: c[6], roll: c[7], yaw: self.heading + c[8] + aim },
+            pelvis: Tilt { pitch: c[6], roll: c[7], yaw: heading + c[8] + kick.aimed(time) },
             trunk: Tilt { pitch: c[9], roll: c[10], yaw: c[11] },
             head: Tilt {
-                pitch: c[18] + self.head[0].at(time),
+                pitch: c[18] + head[0].at(time),
                 roll: 0.0,
-                yaw: -0.8 * (c[8] + c[11]) + self.head[1].at(time),
+                yaw: -0.8 * (c[8] + c[11]) + head[1].at(time),
             },
             arms: [arm(0, 15), arm(1, 12)],
-            feet: self.feet(body, strike, time, &c),
+            feet: self.feet(body, kick, time, &c),
         }
     }
 }

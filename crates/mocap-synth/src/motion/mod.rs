@@ -4,6 +4,7 @@ mod gait;
 mod jump;
 mod kick;
 mod reach;
+mod script;
 mod steps;
 mod throw;
 mod track;

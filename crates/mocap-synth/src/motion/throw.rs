@@ -1,9 +1,12 @@
-use super::{Choreography, LEAD_S};
+use super::{
+    Choreography,
+    script::{Bout, Script, Stance},
+};
 use crate::{
     body::Body,
-    curve::{Timeline, Wobble, ease, lerp},
+    curve::Timeline,
     dice::Dice,
-    math::{TAU, degrees, sin_cos},
+    math::degrees,
     rig::{Arm, FootTarget, Pivot, Posture, Tilt, pitched_ankle},
 };
 
@@ -44,158 +47,104 @@ const LENGTHS: usize = 3;
 
 /// Overarm throws with the right hand from one spot, one after the other.
 pub(crate) struct Throw {
-    throws: Vec<Cast>,
-    heading: f64,
-    size: f64,
-    sway: [Wobble; 2],
-    arms: [Wobble; 2],
-    head: [Wobble; 2],
-}
-
-struct Cast {
-    start: f64,
-    end: f64,
-    /// Turn of this throw's direction, in radians.
-    aim: f64,
-    channels: Timeline<CHANNELS>,
-    /// When the front foot swings forward and back.
-    step: [f64; 2],
-    back: [f64; 2],
+    stance: Stance,
+    throws: Vec<Bout<CHANNELS>>,
 }
 
 impl Throw {
     pub(crate) fn new(body: &Body, seconds: f64, dice: &mut Dice) -> Self {
-        let size = body.leg() / 0.852;
-        let slow = |dice: &mut Dice, rms: f64| Wobble::new(dice, rms, 0.1, 0.7);
-        let mut throw = Self {
-            throws: Vec::new(),
-            heading: dice.uniform(0.0, TAU),
-            size,
-            sway: [0, 1].map(|_| slow(dice, 0.005 * size)),
-            arms: [0, 1].map(|_| slow(dice, degrees(3.0))),
-            head: [0, 1].map(|_| slow(dice, degrees(5.0))),
-        };
-        // A take begins somewhere in a throw, never on a fixed pose.
-        let mut time = -LEAD_S - dice.uniform(0.0, 2.5);
-        while time < seconds + LEAD_S {
-            let cast = Cast::sample(time, size, body.surface, dice);
-            time = cast.end;
-            throw.throws.push(cast);
-        }
-        throw
-    }
-}
-
-impl Cast {
-    /// People wait less between throws than the template does, and throw faster.
-    fn sample(start: f64, size: f64, of_person: bool, dice: &mut Dice) -> Self {
-        let [wait, hurry] = if of_person { [0.3, 0.86] } else { [1.0, 1.0] };
-        let rest = wait * dice.uniform(0.1, 0.7);
-        let pace = hurry * dice.around(1.0, 0.07);
-        let mut time = start + rest;
-        let vigour: [f64; CHANNELS] = std::array::from_fn(|_| dice.around(1.0, 0.06));
-        let mut keys = vec![(start, Self::values(0, size, &vigour))];
-        for key in 0..KEYS {
-            keys.push((time, Self::values(key, size, &vigour)));
-            if let Some(length) = PACE_S.get(key) {
-                time += pace * dice.around(*length, 0.04);
-            }
-        }
-        let (step, back) = ([keys[2].0, keys[4].0], [keys[8].0, keys[9].0]);
-        let aim = degrees(dice.jitter(5.0));
-        Self { start, end: time, aim, channels: Timeline::new(&keys), step, back }
+        let stance = Stance::new(body, degrees(5.0), dice);
+        let sample = |start, dice: &mut Dice| throw(start, stance.size, body.surface, dice);
+        let throws = Bout::all(seconds, dice, sample);
+        Self { stance, throws }
     }
 
-    /// One row of the script for this body, with this throw's vigour in every channel.
-    fn values(key: usize, size: f64, vigour: &[f64; CHANNELS]) -> [f64; CHANNELS] {
-        let rest = &SCRIPT[0];
-        std::array::from_fn(|n| {
-            let value = rest[n] + vigour[n] * (SCRIPT[key][n] - rest[n]);
-            if n < LENGTHS { value * size } else { degrees(value) }
-        })
-    }
-}
-
-impl Throw {
-    /// A point seen from the spot between the feet.
-    fn at(&self, ahead: f64, left: f64) -> [f64; 2] {
-        let (s, c) = sin_cos(self.heading);
-        [c * ahead - s * left, s * ahead + c * left]
-    }
-
-    fn feet(&self, body: &Body, cast: &Cast, time: f64, c: &[f64; CHANNELS]) -> [FootTarget; 2] {
-        let half = 0.12 * self.size;
-        // One arc over the whole step, so that the foot leaves and meets the floor softly.
-        let arc = |[from, to]: [f64; 2]| {
-            let u = ((time - from) / (to - from)).clamp(0.0, 1.0);
-            let v = u * (1.0 - u);
-            64.0 * v * v * v
-        };
-        let lift = self.size * (0.12 * arc(cast.step) + 0.07 * arc(cast.back));
-        let front_heading = self.heading + degrees(4.0);
+    fn feet(
+        &self,
+        body: &Body,
+        throw: &Bout<CHANNELS>,
+        time: f64,
+        c: &[f64; CHANNELS],
+    ) -> [FootTarget; 2] {
+        let Stance { size, heading, .. } = self.stance;
+        let half = 0.12 * size;
+        let [out, home] = throw.arcs(time);
+        let front_heading = heading + degrees(4.0);
         let mut front = pitched_ankle(
             body,
-            self.at(self.stride(cast, time), half),
+            self.stance.at(0.60 * size * throw.stride(time), half),
             front_heading,
             c[17],
             if c[17] > 0.0 { Pivot::Ball } else { Pivot::Heel },
         );
-        front[2] += lift;
-        let rear_heading = self.heading - degrees(35.0);
-        let rear = pitched_ankle(body, self.at(0.0, -half), rear_heading, c[18], Pivot::Ball);
+        front[2] += size * (0.12 * out + 0.07 * home);
+        let rear_heading = heading - degrees(35.0);
+        let rear_flat = self.stance.at(0.0, -half);
+        let rear = pitched_ankle(body, rear_flat, rear_heading, c[18], Pivot::Ball);
         [
             FootTarget { ankle: front, heading: front_heading, pitch: c[17], toe: 0.0 },
             FootTarget { ankle: rear, heading: rear_heading, pitch: c[18], toe: c[18].max(0.0) },
         ]
     }
+}
 
-    /// How far the front foot stands ahead: forward with the step, back at the end.
-    fn stride(&self, cast: &Cast, time: f64) -> f64 {
-        let share = |[from, to]: [f64; 2]| ease((time - from) / (to - from));
-        0.60 * self.size * (share(cast.step) - share(cast.back))
+/// People wait less between throws than the template does, and throw faster.
+fn throw(start: f64, size: f64, of_person: bool, dice: &mut Dice) -> Bout<CHANNELS> {
+    let [wait, hurry] = if of_person { [0.3, 0.86] } else { [1.0, 1.0] };
+    let rest = wait * dice.uniform(0.1, 0.7);
+    let pace = hurry * dice.around(1.0, 0.07);
+    let mut time = start + rest;
+    let vigour = std::array::from_fn(|_| dice.around(1.0, 0.06));
+    let script = Script { rows: &SCRIPT, lengths: LENGTHS, size, vigour };
+    let mut keys = vec![(start, script.row(0))];
+    for key in 0..KEYS {
+        keys.push((time, script.row(key)));
+        if let Some(length) = PACE_S.get(key) {
+            time += pace * dice.around(*length, 0.04);
+        }
     }
+    let (step, back) = ([keys[2].0, keys[4].0], [keys[8].0, keys[9].0]);
+    let aim = degrees(dice.jitter(5.0));
+    Bout { start, end: time, aim, channels: Timeline::new(&keys), step, back }
 }
 
 impl Choreography for Throw {
     fn posture(&self, body: &Body, time: f64) -> Posture {
-        let index = self.throws.partition_point(|c| c.start <= time).saturating_sub(1);
-        let cast = &self.throws[index];
-        let c = cast.channels.at(time);
-        let busy = ease((time - cast.step[0]) / 0.4) * (1.0 - ease((time - cast.back[0]) / 0.5));
-        let aim = lerp(0.0, cast.aim, busy);
-        let [sway_x, sway_y] = [0, 1].map(|i| self.sway[i].at(time));
-        let [x, y] = self.at(c[0] + sway_x, c[1] + sway_y);
+        let throw = Bout::of(&self.throws, time);
+        let Stance { heading, arms, head, .. } = &self.stance;
+        let c = throw.channels.at(time);
+        let [x, y] = self.stance.swayed(c[0], c[1], time);
         let right = Arm {
-            flexion: c[9] + self.arms[1].at(time),
+            flexion: c[9] + arms[1].at(time),
             abduction: c[10],
             across: c[11],
             outward: c[12],
-            elbow: c[13] + 0.6 * self.arms[0].at(time),
+            elbow: c[13] + 0.6 * arms[0].at(time),
             pronation: degrees(25.0),
             wrist: 0.15 * (c[13] - degrees(60.0)).min(0.0),
             shrug: 0.12 * c[10],
         };
         let left = Arm {
-            flexion: c[14] + self.arms[0].at(time),
+            flexion: c[14] + arms[0].at(time),
             abduction: c[15],
             across: 0.0,
             outward: degrees(-20.0),
-            elbow: c[16] + 0.6 * self.arms[1].at(time),
+            elbow: c[16] + 0.6 * arms[1].at(time),
             pronation: degrees(25.0),
             wrist: 0.0,
             shrug: 0.10 * c[14].max(0.0),
         };
         Posture {
             pelvis_m: [x, y, body.standing() - 0.012 * body.leg() + c[2]],
-            pelvis: Tilt { pitch: c[3], roll: 0.0, yaw: self.heading + c[4] + aim },
+            pelvis: Tilt { pitch: c[3], roll: 0.0, yaw: heading + c[4] + throw.aimed(time) },
             trunk: Tilt { pitch: c[5], roll: c[6], yaw: c[7] },
             head: Tilt {
-                pitch: -0.5 * c[5] + self.head[0].at(time),
+                pitch: -0.5 * c[5] + head[0].at(time),
                 roll: 0.0,
-                yaw: c[8] + self.head[1].at(time),
+                yaw: c[8] + head[1].at(time),
             },
             arms: [left, right],
-            feet: self.feet(body, cast, time, &c),
+            feet: self.feet(body, throw, time, &c),
         }
     }
 }
