@@ -37,6 +37,17 @@ const SPREADS: [(&str, &str); 19] = [
     ("", "40"),
 ];
 
+/// Degrees by which hinges turn about their axes; the generator's people face x and have z up.
+const LIMITS: [(&str, &str); 6] = [
+    ("knee", "-5 165"),
+    ("elbow", "-165 10"),
+    // Fingers of hanging hands bend towards the thighs.
+    ("left_finger2", "-125 5"),
+    ("left_finger3", "-95 10"),
+    ("right_finger2", "-5 125"),
+    ("right_finger3", "-10 95"),
+];
+
 pub fn record(motion: Activity, frames: usize, seed: u64) -> SyntheticTake {
     record_with(&SynthParams { motion, frames, seed, ..SynthParams::default() })
 }
@@ -151,6 +162,12 @@ fn body(
         let fits = |part: &str| joint.name.contains(part);
         let spread = SPREADS.iter().find(|(part, _)| fits(part)).unwrap().1;
         writeln!(text, "spread {} {spread}", joint.name).unwrap();
+        let hinge = ["index", "middle", "ring", "pinky"]
+            .iter()
+            .fold(joint.name.clone(), |name, finger| name.replace(finger, "finger"));
+        if let Some((_, limits)) = LIMITS.iter().find(|(part, _)| hinge.contains(part)) {
+            writeln!(text, "limit {} {limits}", joint.name).unwrap();
+        }
         // Arms hang in the rest pose.
         if let Some(turn) = [("left_shoulder", 90), ("right_shoulder", -90)]
             .iter()
