@@ -3,76 +3,30 @@ use std::{
     sync::Arc,
 };
 
-use mocap_core::{
-    IterReport, MarkerSet, Motion, MotionSolver, Skeleton, SolveError, Solved, Take, Termination,
-    geometry::dot,
-};
-use ndarray::{Array3, s};
+use mocap_core::{IterReport, MarkerSet, MotionSolver, Skeleton, SolveError, Solved, Take};
+use ndarray::s;
 
 use crate::{
     IkError, IkParams,
     body::Body,
-    bridge::Bridges,
     calibrate::{self, Calibrated},
     choose::diverse,
-    frame::Fit,
     sight::Sight,
-    size,
-    track::{self, Inertia, Scout, Track},
-    tree::{Placed, State, Tree},
+    size, track,
+    tree::Tree,
 };
+
+mod ready;
+mod solution;
+
+pub(crate) use ready::{Outcome, Ready};
+pub use solution::{CalibrationRound, Solution};
 
 /// Solves labelled takes into the motion of a body.
 #[derive(Debug, Clone)]
 pub struct IkSolver {
     body: Body,
     params: IkParams,
-}
-
-/// A solved take.
-#[derive(Debug, Clone)]
-pub struct Solution {
-    /// The body as calibrated for this take.
-    pub body: Body,
-    /// Its motion.
-    pub motion: Motion,
-    /// Where the mapped markers should be, `(T, M, 3)` in metres by the take's columns: clean, without gaps. NaN for
-    /// markers that the map does not know or the take never shows.
-    pub markers: Array3<f64>,
-    /// Root mean square distance between measured and expected markers in metres, one a frame; NaN where a frame
-    /// shows none.
-    pub residual_m: Vec<f64>,
-    /// Frames that were still moving after their last step.
-    pub unconverged: usize,
-    /// Steps of all frames together.
-    pub steps: usize,
-    /// Labels of the take that the map does not know.
-    pub unmapped: Vec<String>,
-    /// Rounds of calibration with their frames and steps.
-    pub calibration: Vec<CalibrationRound>,
-    /// Why the work ended.
-    pub termination: Termination,
-}
-
-/// A round of calibration.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub struct CalibrationRound {
-    /// Frames used.
-    pub frames: usize,
-    /// Steps made.
-    pub steps: usize,
-    /// Cost in the end: squared misses over the spreads.
-    pub cost: f64,
-}
-
-/// A body on a take, ready to be tracked.
-pub(crate) struct Ready {
-    pub(crate) body: Body,
-    pub(crate) tree: Tree,
-    pub(crate) sight: Sight,
-    pub(crate) scout: Scout,
-    pub(crate) rounds: Vec<CalibrationRound>,
 }
 
 impl IkSolver {
@@ -146,7 +100,7 @@ impl IkSolver {
     ) -> Result<Solution, IkError> {
         let ready = self.prepare(take)?;
         let outcome = ready.poses(&self.params, take.rate_hz(), observer);
-        finish(take, ready, &outcome)
+        solution::finish(take, ready, &outcome)
     }
 
     /// Solves every frame.
@@ -236,125 +190,6 @@ fn listed<'a>(labels: impl IntoIterator<Item = &'a str>) -> String {
         0 => first,
         more => format!("{first} and {more} more"),
     }
-}
-
-fn finish(take: &Take, ready: Ready, outcome: &Outcome) -> Result<Solution, IkError> {
-    let Outcome { track, termination } = outcome;
-    let Ready { body, tree, sight, rounds, .. } = ready;
-    let skeleton = Arc::clone(&body.skeleton);
-    let poses = track.states.iter().map(|state| tree.pose(state, &skeleton)).collect();
-    let motion = Motion::new(skeleton, take.rate_hz(), poses)?;
-    let markers = expected(&tree, &track.states, take.marker_count());
-    let residual_m = (0..take.frames())
-        .map(|frame| {
-            let seen = sight.at(frame);
-            let square = |&(anchor, at): &(u32, [f64; 3])| {
-                let column = tree.anchors[anchor as usize].column;
-                let off: [f64; 3] = std::array::from_fn(|a| markers[(frame, column, a)] - at[a]);
-                dot(off, off)
-            };
-            (seen.iter().map(square).sum::<f64>() / seen.len() as f64).sqrt()
-        })
-        .collect();
-    let mapped: Vec<usize> = tree.anchors.iter().map(|a| a.column).collect();
-    let unmapped = (0..take.marker_count()).filter(|m| !mapped.contains(m));
-    Ok(Solution {
-        motion,
-        markers,
-        residual_m,
-        unconverged: track.fits.iter().filter(|fit| !fit.converged).count(),
-        steps: outcome.steps(),
-        unmapped: unmapped.map(|m| take.markers().name(m).to_owned()).collect(),
-        calibration: rounds,
-        termination: *termination,
-        body,
-    })
-}
-
-/// Poses of a take, and why they ended.
-pub(crate) struct Outcome {
-    pub(crate) track: Track,
-    pub(crate) termination: Termination,
-}
-
-impl Outcome {
-    pub(crate) fn steps(&self) -> usize {
-        self.track.fits.iter().map(|fit| fit.iterations).sum()
-    }
-}
-
-impl Ready {
-    /// Tracks every frame, and again those in which a joint is not seen, this time bridged.
-    pub(crate) fn poses(
-        &self,
-        params: &IkParams,
-        rate_hz: f64,
-        observer: &mut dyn FnMut(&IterReport) -> ControlFlow<()>,
-    ) -> Outcome {
-        let inertia = Inertia::new(params, rate_hz);
-        let mut outcome = self.track(params, &inertia, observer);
-        if outcome.termination == Termination::Stopped {
-            return outcome;
-        }
-        let bridges =
-            Bridges::new(&self.tree, &self.sight, &outcome.track.states, inertia, rate_hz);
-        if let Some(bridges) = bridges {
-            let redone = track::retrack(&self.tree, &self.sight, params, &outcome.track, &bridges);
-            for (frame, state, fit) in redone {
-                outcome.track.states[frame] = state;
-                outcome.track.fits[frame] = fit;
-            }
-        }
-        outcome
-    }
-
-    /// Tracks a batch of chunks at a time, so that the observer is asked in between.
-    fn track(
-        &self,
-        params: &IkParams,
-        inertia: &Inertia,
-        observer: &mut dyn FnMut(&IterReport) -> ControlFlow<()>,
-    ) -> Outcome {
-        let frames = self.sight.frames();
-        let mut track =
-            Track { states: Vec::with_capacity(frames), fits: Vec::with_capacity(frames) };
-        let mut objective = 0.0;
-        let mut termination = Termination::Converged;
-        while track.states.len() < frames {
-            let start = track.states.len();
-            let end = (start + track::BATCH).min(frames);
-            let part =
-                track::track(&self.tree, &self.sight, params, &self.scout, inertia, start..end);
-            objective += part.fits.iter().map(|fit| fit.cost).sum::<f64>();
-            track.states.extend(part.states);
-            track.fits.extend(part.fits);
-            let report = IterReport { iteration: end, limit: frames, objective };
-            if observer(&report).is_break() {
-                termination = Termination::Stopped;
-                break;
-            }
-        }
-        let held = Fit { cost: f64::NAN, iterations: 0, converged: false };
-        for frame in track.states.len()..frames {
-            track.states.push(self.scout.states[frame / self.scout.stride].clone());
-            track.fits.push(held);
-        }
-        Outcome { track, termination }
-    }
-}
-
-/// Expected markers `(T, M, 3)` in metres, NaN for those that no anchor has.
-pub(crate) fn expected(tree: &Tree, states: &[State], markers: usize) -> Array3<f64> {
-    let mut expected = Array3::from_elem((states.len(), markers, 3), f64::NAN);
-    let mut placed = vec![Placed::NOWHERE; tree.len()];
-    for (frame, state) in states.iter().enumerate() {
-        tree.place(state, &mut placed);
-        for anchor in &tree.anchors {
-            let at = tree.marker(anchor, &placed);
-            (0..3).for_each(|a| expected[(frame, anchor.column, a)] = at[a]);
-        }
-    }
-    expected
 }
 
 impl MotionSolver for IkSolver {
