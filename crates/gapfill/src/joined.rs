@@ -2,9 +2,11 @@ use std::ops::ControlFlow;
 
 use mocap_core::{
     CellState, Estimates, FillError, Filled, Gap, GapFiller, IterReport, Take,
-    geometry::{add, scale, sub},
+    geometry::{add, scale},
 };
 use ndarray::Array2;
+
+use crate::step::Step;
 
 /// What becomes of the step between the measured samples beside a gap and the fill.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -74,8 +76,9 @@ fn join(input: &Take, filled: &Filled) -> Result<Filled, mocap_core::CoreError> 
 /// What to take off each frame of a gap, in metres.
 fn shifts(take: &Take, gap: &Gap) -> Vec<[f64; 3]> {
     let single = gap.len() == 1;
-    let entry = Step::at(take, gap.marker, gap.frames.start);
-    let exit = Step::at(take, gap.marker, gap.frames.end);
+    let at = |t: usize| (t < take.frames()).then(|| take.position(t, gap.marker)).flatten();
+    let entry = Step::at(&at, gap.frames.start);
+    let exit = Step::at(&at, gap.frames.end);
     // In a gap of one frame the move on its far side shows the same offset once more.
     let entry = entry.map(|s| s.offset(if single { s.later_share } else { 0.0 }));
     let exit = exit.map(|s| scale(-1.0, s.offset(if single { 1.0 - s.later_share } else { 0.0 })));
@@ -87,35 +90,4 @@ fn shifts(take: &Take, gap: &Gap) -> Vec<[f64; 3]> {
         (None, None) => [0.0; 3],
     };
     (0..gap.len()).map(at).collect()
-}
-
-/// The move across a border, less the usual move beside it.
-struct Step {
-    step: [f64; 3],
-    /// Share of the later move in the usual one: 0, ½ or 1.
-    later_share: f64,
-}
-
-impl Step {
-    /// The step from the frame before `border` to the frame at it.
-    fn at(take: &Take, marker: usize, border: usize) -> Option<Self> {
-        let at = |t: Option<usize>| {
-            t.filter(|&t| t < take.frames()).and_then(|t| take.position(t, marker))
-        };
-        let (before, here) = (at(border.checked_sub(1))?, at(Some(border))?);
-        let earlier = at(border.checked_sub(2)).map(|p| sub(before, p));
-        let later = at(Some(border + 1)).map(|p| sub(p, here));
-        let (usual, later_share) = match (earlier, later) {
-            (Some(p), Some(q)) => (scale(0.5, add(p, q)), 0.5),
-            (Some(earlier), None) => (earlier, 0.0),
-            (None, Some(later)) => (later, 1.0),
-            (None, None) => return None,
-        };
-        Some(Self { step: sub(sub(here, before), usual), later_share })
-    }
-
-    /// The offset of the fill that shows as this step, if `echo` of it shows in the usual move too.
-    fn offset(&self, echo: f64) -> [f64; 3] {
-        scale(1.0 / (1.0 + echo), self.step)
-    }
 }

@@ -4,6 +4,7 @@ mod auto;
 mod joined;
 mod options;
 mod registry;
+mod step;
 
 pub use auto::{Auto, AutoParams};
 pub use baselines::Edges;

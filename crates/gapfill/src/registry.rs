@@ -13,7 +13,7 @@ use mocap_core::{FillError, GapFiller, MarkerKnowledge, MarkerSet};
 use solve_ik::{IkFiller, IkParams};
 use thiserror::Error;
 
-use crate::{Auto, AutoParams, Borders, Coordinates, Joined, Options};
+use crate::{Auto, AutoParams, Borders, Coordinates, Joined, Options, auto::Models};
 
 /// The method to take where the user names none.
 pub const DEFAULT: &str = "auto";
@@ -95,7 +95,7 @@ pub const METHODS: &[Method] = &[
     Method {
         id: "auto",
         summary: "the best mixture for each gap, found by trying every method on gaps with known truth; says how sure it is",
-        options: &["edges", "max-error"],
+        options: &["edges", "max-error", "bodies"],
         build: auto,
     },
     Method {
@@ -203,7 +203,8 @@ fn auto(options: &Options) -> Result<Box<dyn GapFiller>, FillError> {
     let joined = Options { borders: None, ..options.clone() };
     let lds = dynamical_system(LdsFillerParams::default(), Borders::Join, &joined)?;
     let params = AutoParams { max_error_m: options.max_error_m, edges: options.edges };
-    Ok(Box::new(Auto::with_systems(params, lds, soft_bones(&joined)?)?))
+    let models = Models { lds, bolero: soft_bones(&joined)?, ik: kinematic(options)? };
+    Ok(Box::new(Auto::with_models(params, models)?))
 }
 
 fn kinematic(options: &Options) -> Result<Box<dyn GapFiller>, FillError> {

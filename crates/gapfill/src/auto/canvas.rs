@@ -6,7 +6,10 @@ use locality_ridge::join;
 use mocap_core::{Choice, CoreError, Estimates, Gap, Take};
 use ndarray::Array2;
 
-use super::mixture::{Mixture, Stock};
+use super::{
+    ease,
+    mixture::{Mixture, Stock},
+};
 
 /// A step between two pieces is spread over this long on either side.
 const BLEND_S: f64 = 0.1;
@@ -136,8 +139,26 @@ impl<'a> Canvas<'a> {
                 all[(t, gap.marker)] = *sigma;
             }
         }
+        self.ease(gap);
         let expected_m = square.is_finite().then(|| square.sqrt());
         Some(Choice { gap: gap.clone(), expected_m, shares })
+    }
+
+    /// Draws a fill to the samples beside it where no body could move as fast.
+    fn ease(&mut self, gap: &Gap) {
+        let positions = &self.estimates.positions;
+        let path = |t: usize| {
+            let filled = gap.frames.contains(&t);
+            let place = || std::array::from_fn(|a| positions[(t, gap.marker, a)]);
+            let seen = || (t < self.take.frames()).then(|| self.take.position(t, gap.marker));
+            if filled { Some(place()) } else { seen().flatten() }
+        };
+        let Some(excess) = ease::excess(&path, gap, self.take.rate_hz()) else { return };
+        for (t, off) in gap.frames.clone().zip(excess) {
+            for (a, c) in off.into_iter().enumerate() {
+                self.estimates.positions[(t, gap.marker, a)] -= c;
+            }
+        }
     }
 
     /// Leaves a gap open.

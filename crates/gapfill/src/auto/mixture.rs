@@ -37,6 +37,8 @@ pub(super) struct Tried<'a> {
     pub pseudo_gaps: &'a [PseudoGap],
     /// Frames of each that errors are known in.
     pub scored: &'a [Vec<usize>],
+    /// How much each counts.
+    pub likeness: &'a [f64],
 }
 
 impl Mixture {
@@ -48,7 +50,14 @@ impl Mixture {
         sides: Sides,
         rate_hz: f64,
     ) -> Self {
-        Self::weighted(candidates, stack::weights(candidates), tried, frames, sides, rate_hz)
+        Self::weighted(
+            candidates,
+            stack::weights(candidates, tried.likeness),
+            tried,
+            frames,
+            sides,
+            rate_hz,
+        )
     }
 
     /// Mixes with these weights.
@@ -68,12 +77,13 @@ impl Mixture {
             (0..frames.len()).map(|k| mixed(&|c| c.errors[g][k])).collect()
         };
         let errors: Vec<Vec<[f64; 3]>> = tried.scored.iter().enumerate().map(of_gap).collect();
+        let likeness = tried.likeness;
         let tried: Vec<Errors<'_>> = tried
             .pseudo_gaps
             .iter()
             .zip(tried.scored)
-            .zip(&errors)
-            .map(|((gap, frames), errors)| Errors { gap, frames, values: errors })
+            .zip(errors.iter().zip(likeness))
+            .map(|((gap, frames), (values, &counts))| Errors { gap, frames, values, counts })
             .collect();
         let dissent = dissent(candidates, &weights, frames.len(), &tried);
         let spread = Spread::of(&tried, rate_hz).map(|spread| spread.in_dissent(dissent));
@@ -81,7 +91,7 @@ impl Mixture {
         Self {
             positions: (0..frames.len()).map(|k| mixed(&|c| c.positions[k])).collect(),
             sigma_m: frames.clone().map(sigma).collect(),
-            square_m2: mean_square(&errors),
+            square_m2: mean_square(&errors, likeness),
             shares: shares(candidates, &weights),
         }
     }
@@ -125,12 +135,13 @@ impl Mixture {
     }
 }
 
-fn mean_square(errors: &[Vec<[f64; 3]>]) -> Option<f64> {
+fn mean_square(errors: &[Vec<[f64; 3]>], likeness: &[f64]) -> Option<f64> {
     let of_gap = |errors: &Vec<[f64; 3]>| {
         errors.iter().map(|&e| dot(e, e)).sum::<f64>() / errors.len() as f64
     };
-    let known: Vec<f64> = errors.iter().filter(|e| !e.is_empty()).map(of_gap).collect();
-    (!known.is_empty()).then(|| known.iter().sum::<f64>() / known.len() as f64)
+    let known = || errors.iter().zip(likeness).filter(|(e, _)| !e.is_empty());
+    let counted: f64 = known().map(|(_, counts)| counts).sum();
+    (counted > 0.0).then(|| known().map(|(e, counts)| counts * of_gap(e)).sum::<f64>() / counted)
 }
 
 /// Mean square distance of the candidates from their mixture in the gap, as a multiple of that in pseudo-gaps: the more

@@ -1,7 +1,11 @@
 //! The best mixture of methods for each gap, chosen by trying them on gaps whose truth is known.
 
 mod canvas;
+mod ease;
+mod growth;
 mod mixture;
+mod pace;
+mod rival;
 mod rivals;
 mod sigma;
 mod stack;
@@ -11,16 +15,18 @@ use std::ops::ControlFlow;
 use baselines::{CubicSpline, Pca, Pchip, QuinticSpline};
 use bolero_sc::{BoleroSc, BoleroScParams};
 use lds_kalman::filler::{LdsFiller, LdsFillerParams};
-use locality_ridge::ensemble::Ensemble;
+use locality_ridge::ensemble::{Ensemble, Part};
 use mocap_core::{
     Choice, FillError, FillReport, Filled, Gap, GapContext, GapFiller, IterReport, Refusal,
     Refused, Take, Termination,
 };
+use solve_ik::{Body, IkFiller, IkParams};
 
 use self::{
     canvas::{Canvas, Piece},
     mixture::{Mixture, Stock, Tried},
-    rivals::{Rival, compete},
+    rival::Rival,
+    rivals::compete,
 };
 use crate::{Edges, Joined};
 
@@ -30,7 +36,7 @@ const POOR_M: f64 = 0.025;
 /// Where they expect to err by more, even those that take long.
 const HOPELESS_M: f64 = 0.06;
 
-/// In shorter black-outs a curve through each marker is as good as a model of the motion.
+/// In shorter gaps a curve through the marker may be as good as anything.
 const CURVE_S: f64 = 0.12;
 
 /// What a user may ask of [`Auto`].
@@ -50,17 +56,26 @@ pub struct AutoParams {
 /// For one gap:
 /// 1. Eight pseudo-gaps of its length, with the same neighbours seen, are cut where the marker is observed.
 /// 2. Regressions on the neighbours ([`Ensemble`]) fill gap and pseudo-gaps.
-/// 3. Where no neighbour is seen, or the regressions err by centimetres in the pseudo-gaps, methods of other kinds
-///    fill them too: curves, principal components, and for more than a tenth of a second the dynamical systems `lds` and `bolero-sc`. They work on
-///    the take as filled so far.
-/// 4. The fill is the mixture with the least error in the pseudo-gaps. That error, by the distance from
-///    the borders, is the sigma of each filled sample: about 68 % of errors are within one sigma, 95 % within two.
+/// 3. In gaps of up to a tenth of a second, where no neighbour is seen, and where the regressions err by centimetres in
+///    the pseudo-gaps, methods of other kinds fill them too: curves, principal components, and in longer gaps the
+///    dynamical systems `lds` and `bolero-sc` and the body of `ik`. They work on the take as filled so far.
+/// 4. The fill is the mixture with the least error in the pseudo-gaps, of which those count most that are like the
+///    gap. That error, by the distance from the borders, is the sigma of each filled sample: about 68 % of errors are
+///    within one sigma, 95 % within two.
+/// 5. A fill that leaves the samples beside the gap faster than bodies can is drawn to them.
 ///
 /// # Cost
 /// Linear in the number of gaps; memory linear in the frames of the take.
 pub struct Auto {
     params: AutoParams,
     rivals: Vec<Rival>,
+}
+
+/// Methods that learn a model of the whole take.
+pub(crate) struct Models {
+    pub lds: Box<dyn GapFiller>,
+    pub bolero: Box<dyn GapFiller>,
+    pub ik: Box<dyn GapFiller>,
 }
 
 impl std::fmt::Debug for Auto {
@@ -70,37 +85,41 @@ impl std::fmt::Debug for Auto {
 }
 
 impl Auto {
-    /// A filler with these parameters, and with dynamical systems as they come.
+    /// A filler with these parameters, and with dynamical systems and bodies as they come.
     ///
     /// # Errors
     /// [`FillError::Parameter`] that names the field, its value and the rule.
     pub fn new(params: AutoParams) -> Result<Self, FillError> {
         let lds = LdsFiller::new(LdsFillerParams::default())?;
         let bolero = BoleroSc::new(BoleroScParams::default())?;
-        Self::with_systems(params, Box::new(Joined::new(lds)), Box::new(Joined::new(bolero)))
+        let failed = |source| FillError::Method { method: "ik", source: Box::new(source) };
+        let ik = IkFiller::new(Body::built_in(), IkParams::default()).map_err(failed)?;
+        let models = Models {
+            lds: Box::new(Joined::new(lds)),
+            bolero: Box::new(Joined::new(bolero)),
+            ik: Box::new(ik),
+        };
+        Self::with_models(params, models)
     }
 
-    /// A filler with these parameters and these dynamical systems.
+    /// A filler with these parameters and these models.
     ///
     /// # Errors
     /// As [`new`](Self::new).
-    pub(crate) fn with_systems(
-        params: AutoParams,
-        lds: Box<dyn GapFiller>,
-        bolero: Box<dyn GapFiller>,
-    ) -> Result<Self, FillError> {
+    pub(crate) fn with_models(params: AutoParams, models: Models) -> Result<Self, FillError> {
         if let Some(value) = params.max_error_m.filter(|&m| !(m.is_finite() && m > 0.0)) {
             let rule = "positive and finite";
             return Err(FillError::Parameter { field: "max_error_m", value, rule });
         }
-        let spline = Box::new(CubicSpline { edges: params.edges });
+        let edges = params.edges;
         let rivals = vec![
-            Rival { name: "spline", filler: spline, costly: false },
-            Rival { name: "pchip", filler: Box::new(Pchip { edges: params.edges }), costly: false },
-            Rival { name: "vicon-spline", filler: Box::new(QuinticSpline), costly: false },
-            Rival { name: "pca", filler: Box::new(Pca::default()), costly: false },
-            Rival { name: "lds", filler: lds, costly: true },
-            Rival { name: "bolero-sc", filler: bolero, costly: true },
+            Rival::quick("spline", 1.2, CubicSpline { edges }),
+            Rival { turns: false, ..Rival::quick("pchip", 1.0, Pchip { edges }) },
+            Rival::quick("vicon-spline", 1.6, QuinticSpline),
+            Rival { turns: false, ..Rival::quick("pca", 0.8, Pca::default()) },
+            Rival::model("lds", models.lds),
+            Rival::model("bolero-sc", models.bolero),
+            Rival { growth: 0.4, body: true, ..Rival::model("ik", models.ik) },
         ];
         Ok(Self { params, rivals })
     }
@@ -133,7 +152,7 @@ impl GapFiller for Auto {
         let mut canvas = Canvas::new(take);
         let mut ensemble = Ensemble::new(take);
         for (k, gap) in seen.iter().enumerate() {
-            canvas.add(local(&mut ensemble, gap, take.rate_hz()));
+            canvas.add(local(take, &mut ensemble, gap));
             let expected = canvas.square_m2(gap).unwrap_or(0.0).sqrt();
             let done = IterReport { iteration: k + 1, limit: seen.len(), objective: expected };
             if observer(&done).is_break() {
@@ -155,27 +174,48 @@ impl GapFiller for Auto {
 }
 
 /// A gap filled from its neighbours, piece by piece.
-fn local(ensemble: &mut Ensemble<'_>, gap: &Gap, rate_hz: f64) -> Vec<Piece> {
-    let piece = |part: locality_ridge::ensemble::Part| {
-        let tried = Tried { pseudo_gaps: &part.pseudo_gaps, scored: &part.scored };
+fn local(take: &Take, ensemble: &mut Ensemble<'_>, gap: &Gap) -> Vec<Piece> {
+    let piece = |mut part: Part| {
+        for candidate in &mut part.candidates {
+            let growth = growth::OF_MODELS;
+            growth::extrapolate(candidate, &part.pseudo_gaps, part.frames.len(), growth);
+        }
+        let frames = part.frames.clone();
+        let runs: Vec<_> = part.pseudo_gaps.iter().map(|gap| gap.frames.clone()).collect();
+        let likeness = pace::likeness(take, gap.marker, &frames, &runs);
+        let tried =
+            Tried { pseudo_gaps: &part.pseudo_gaps, scored: &part.scored, likeness: &likeness };
         let fill = (!part.candidates.is_empty())
-            .then(|| Mixture::of(&part.candidates, tried, &part.frames, part.sides, rate_hz));
-        let poor = fill.as_ref().is_some_and(|fill| fill.is_poor(POOR_M));
-        let stock = poor.then_some(Stock {
-            candidates: part.candidates,
-            pseudo_gaps: part.pseudo_gaps,
-            scored: part.scored,
-        });
-        Piece { marker: gap.marker, frames: part.frames, fill, stock }
+            .then(|| Mixture::of(&part.candidates, tried, &frames, part.sides, take.rate_hz()));
+        let mut piece = Piece { marker: gap.marker, frames, fill, stock: None };
+        if piece.fill.is_some() && is_contested(&piece, take.rate_hz()) {
+            piece.stock = Some(Stock {
+                candidates: part.candidates,
+                pseudo_gaps: part.pseudo_gaps,
+                scored: part.scored,
+            });
+        }
+        piece
     };
     ensemble.parts(gap).into_iter().map(piece).collect()
 }
 
+/// Whether other methods may do better than the neighbours.
+fn is_contested(piece: &Piece, rate_hz: f64) -> bool {
+    is_short(piece.frames.len(), rate_hz)
+        || piece.fill.as_ref().is_none_or(|fill| fill.is_poor(POOR_M))
+}
+
+/// Whether a gap of so many frames is one for curves.
+fn is_short(frames: usize, rate_hz: f64) -> bool {
+    frames as f64 <= CURVE_S * rate_hz
+}
+
 impl Auto {
-    /// Asks other methods where neighbours say nothing, or little.
+    /// Asks other methods where these may do better than the neighbours.
     fn compete(&self, take: &Take, canvas: &mut Canvas<'_>) -> Result<(), FillError> {
-        let poor = |piece: &Piece| piece.fill.as_ref().is_none_or(|fill| fill.is_poor(POOR_M));
-        let base = canvas.filled_but(&poor)?;
+        let rate_hz = take.rate_hz();
+        let base = canvas.filled_but(&|piece| is_contested(piece, rate_hz))?;
         let open: Vec<Gap> = base
             .gaps()
             .into_iter()
@@ -185,8 +225,8 @@ impl Auto {
             return Ok(());
         }
         let costly = canvas.pieces().any(|piece| {
-            let long = piece.frames.len() as f64 > CURVE_S * take.rate_hz();
-            long && piece.fill.as_ref().is_none_or(|fill| fill.is_poor(HOPELESS_M))
+            !is_short(piece.frames.len(), rate_hz)
+                && piece.fill.as_ref().is_none_or(|fill| fill.is_poor(HOPELESS_M))
         });
         for answer in compete(&base, &open, &|gap| canvas.stock(gap), &self.rivals, costly) {
             canvas.offer(&answer.gap, &answer.mixture, answer.of_stock);

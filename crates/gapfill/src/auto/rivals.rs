@@ -4,12 +4,15 @@ use std::collections::BTreeMap;
 
 use locality_ridge::ensemble::{self, Candidate, PseudoGap, Sides};
 use mocap_core::{
-    CellState, Filled, Gap, GapFiller, Mask, Take,
+    CellState, Filled, Gap, Mask, Take,
     geometry::{add, distance, scale, sub},
 };
 
 use super::{
+    growth, is_short,
     mixture::{Mixture, Stock, Tried},
+    pace,
+    rival::Rival,
     stack,
 };
 
@@ -30,14 +33,6 @@ const KIN: f64 = 3.0;
 
 /// How many times as far from its mean place as it was seen a marker may be.
 const REACH: f64 = 3.0;
-
-/// A method that fills whole takes.
-pub(super) struct Rival {
-    pub name: &'static str,
-    pub filler: Box<dyn GapFiller>,
-    /// It learns a model of the whole take, in about a second.
-    pub costly: bool,
-}
 
 /// What the rivals make of a gap.
 pub(super) struct Answer {
@@ -75,7 +70,9 @@ pub(super) fn compete<'a>(
     }
     let groups: Vec<Group> =
         alike.into_values().map(|gaps| Group::new(take, gaps, stock)).collect();
-    let asked: Vec<&Rival> = rivals.iter().filter(|rival| costly || !rival.costly).collect();
+    let sighted = groups.iter().any(|group| !group.is_dark(take));
+    let worth_it = |rival: &&Rival| (costly || !rival.costly) && (sighted || !rival.body);
+    let asked: Vec<&Rival> = rivals.iter().filter(worth_it).collect();
     let mut fills: Vec<Vec<Option<Filled>>> = vec![Vec::new(); asked.len()];
     for pass in 0..PASSES {
         let hidden = hidden(take, &groups, pass);
@@ -89,12 +86,15 @@ pub(super) fn compete<'a>(
         .flat_map(|group| {
             let candidates = |gap: &Gap| {
                 let of = |(rival, fills): (&&Rival, &Vec<Option<Filled>>)| {
-                    group.candidate(take, rival.name, fills, gap)
+                    group
+                        .admits(take, rival)
+                        .then(|| group.candidate(take, rival, fills, gap))
+                        .flatten()
                 };
                 asked.iter().zip(&fills).filter_map(of).collect::<Vec<Candidate>>()
             };
             let rivals: Vec<Vec<Candidate>> = group.gaps.iter().map(candidates).collect();
-            group.mix(take, rivals)
+            group.mix(take, rivals, &asked)
         })
         .collect()
 }
@@ -149,6 +149,11 @@ impl Group {
         group
     }
 
+    /// The pseudo-gaps of all passes.
+    fn tried(&self) -> Vec<PseudoGap> {
+        self.pseudo_gaps.iter().map(|(_, gap)| gap.clone()).collect()
+    }
+
     fn sides(&self, take: &Take) -> Sides {
         let frames = &self.gaps[0].frames;
         Sides { left: frames.start > 0, right: frames.end < take.frames() }
@@ -161,12 +166,25 @@ impl Group {
         (0..take.marker_count()).filter(missing).collect()
     }
 
+    /// Whether a rival can know anything of the gaps. What neighbours fill well is not left to methods that depend on
+    /// the axes of the recording.
+    fn admits(&self, take: &Take, rival: &Rival) -> bool {
+        let dark = self.is_dark(take);
+        let short = is_short(self.gaps[0].len(), take.rate_hz());
+        if dark { !rival.body } else { rival.turns || !short }
+    }
+
+    /// Whether no marker is seen in all of its frames.
+    fn is_dark(&self, take: &Take) -> bool {
+        self.missing(take).len() == take.marker_count()
+    }
+
     /// What a rival made of a gap and its pseudo-gaps, by pass; `None` where it left some of them open, or went where
     /// the marker cannot be.
     fn candidate(
         &self,
         take: &Take,
-        name: &'static str,
+        rival: &Rival,
         fills: &[Option<Filled>],
         gap: &Gap,
     ) -> Option<Candidate> {
@@ -182,17 +200,22 @@ impl Group {
         };
         let positions = gap.frames.clone().map(|t| found(0, t)).collect::<Option<Vec<_>>>()?;
         within_reach(take, gap.marker, &positions).then_some(())?;
-        Some(Candidate {
-            name,
-            positions,
-            errors: self.pseudo_gaps.iter().zip(&self.scored).map(errors).collect::<Option<_>>()?,
-        })
+        let errors =
+            self.pseudo_gaps.iter().zip(&self.scored).map(errors).collect::<Option<_>>()?;
+        let mut candidate = Candidate { name: rival.name, positions, errors };
+        growth::extrapolate(&mut candidate, &self.tried(), gap.len(), rival.growth);
+        Some(candidate)
     }
 
     /// Mixtures of the rivals, and of the candidates of other fills.
-    fn mix(&self, take: &Take, rivals: Vec<Vec<Candidate>>) -> Vec<Answer> {
+    fn mix(&self, take: &Take, rivals: Vec<Vec<Candidate>>, asked: &[&Rival]) -> Vec<Answer> {
+        let seconds = self.gaps[0].len() as f64 / take.rate_hz();
         let mut candidates = rivals;
-        let mut credit = vec![1.0; candidates.first().map_or(0, Vec::len)];
+        let of = |candidate: &Candidate| {
+            let rival = asked.iter().find(|rival| rival.name == candidate.name);
+            rival.map_or(1.0, |rival| rival.credit(seconds))
+        };
+        let mut credit: Vec<f64> = candidates.first().into_iter().flatten().map(of).collect();
         if let Some(stocks) = &self.stocks {
             for (candidates, stock) in candidates.iter_mut().zip(stocks) {
                 candidates.extend(stock.iter().cloned());
@@ -202,27 +225,31 @@ impl Group {
         }
         let names = |of: &Vec<Candidate>| of.iter().map(|c| c.name).collect::<Vec<_>>();
         let alike = candidates.windows(2).all(|two| names(&two[0]) == names(&two[1]));
+        let pseudo_gaps = self.tried();
+        let runs: Vec<_> = pseudo_gaps.iter().map(|gap| gap.frames.clone()).collect();
+        let likeness = |gap: &Gap| pace::likeness(take, gap.marker, &gap.frames, &runs);
+        let likeness: Vec<Vec<f64>> = self.gaps.iter().map(likeness).collect();
         let weights = if alike {
-            stack::weights_together(&candidates, &credit)
+            stack::weights_together(&candidates, &likeness, &credit)
         } else {
-            let alone = |of: &Vec<Candidate>| {
-                let credit = vec![1.0; of.len()];
-                stack::weights_together(std::slice::from_ref(of), &credit).remove(0)
+            let alone = |(of, likeness): (&Vec<Candidate>, &Vec<f64>)| {
+                let (of, likeness) = (std::slice::from_ref(of), std::slice::from_ref(likeness));
+                stack::weights_together(of, likeness, &vec![1.0; of[0].len()]).remove(0)
             };
-            candidates.iter().map(alone).collect()
+            candidates.iter().zip(&likeness).map(alone).collect()
         };
-        let pseudo_gaps: Vec<PseudoGap> =
-            self.pseudo_gaps.iter().map(|(_, gap)| gap.clone()).collect();
-        let tried = Tried { pseudo_gaps: &pseudo_gaps, scored: &self.scored };
         let (sides, rate_hz) = (self.sides(take), take.rate_hz());
-        let answer = |((gap, of), weights): ((&Gap, &Vec<Candidate>), Vec<f64>)| {
+        let answer = |(k, weights): (usize, Vec<f64>)| {
+            let (gap, of) = (&self.gaps[k], &candidates[k]);
+            let tried =
+                Tried { pseudo_gaps: &pseudo_gaps, scored: &self.scored, likeness: &likeness[k] };
             (!of.is_empty()).then(|| Answer {
                 gap: gap.clone(),
                 mixture: Mixture::weighted(of, weights, tried, &gap.frames, sides, rate_hz),
                 of_stock: self.stocks.is_some(),
             })
         };
-        self.gaps.iter().zip(&candidates).zip(weights).filter_map(answer).collect()
+        weights.into_iter().enumerate().filter_map(answer).collect()
     }
 }
 

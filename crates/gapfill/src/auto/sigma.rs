@@ -26,6 +26,8 @@ pub(super) struct Errors<'a> {
     pub gap: &'a PseudoGap,
     pub frames: &'a [usize],
     pub values: &'a [[f64; 3]],
+    /// How much they count.
+    pub counts: f64,
 }
 
 impl Spread {
@@ -34,7 +36,7 @@ impl Spread {
         let samples: Vec<(f64, Option<f64>, Option<f64>, f64)> = pseudo_gaps
             .iter()
             .flat_map(|tried| {
-                let weight = 1.0 / tried.values.len().max(1) as f64;
+                let weight = tried.counts / tried.values.len().max(1) as f64;
                 tried.frames.iter().zip(tried.values).map(move |(&t, &e)| {
                     let (before, after) = distances(t, &tried.gap.frames, tried.gap.sides);
                     (dot(e, e), before, after, weight)

@@ -1,0 +1,72 @@
+//! A bound on the steps at the borders of a gap.
+
+use mocap_core::{Gap, geometry::norm};
+
+use crate::step::Step;
+
+/// No marker is taken to speed up by more than this: about seven times gravity, as in the hardest kicks.
+const MOST_ACCELERATION: f64 = 72.0;
+
+/// What a step exceeds this by fades over so many seconds.
+const FADE_S: f64 = 0.25;
+
+/// What to take off each frame of a gap, so that its steps at both borders are such as a body can make; `None` where they
+/// are.
+///
+/// Where poses in a gap are not like any that were seen, regressions may begin far from the sample before it.
+pub(super) fn excess(
+    path: &dyn Fn(usize) -> Option<[f64; 3]>,
+    gap: &Gap,
+    rate_hz: f64,
+) -> Option<Vec<[f64; 3]>> {
+    let most_m = MOST_ACCELERATION / (rate_hz * rate_hz);
+    let over = |border: usize| {
+        let step = Step::at(path, border)?.step;
+        (norm(step) > most_m).then(|| step.map(|c| (1.0 - most_m / norm(step)) * c))
+    };
+    let (entry, exit) = (over(gap.frames.start), over(gap.frames.end));
+    entry.or(exit)?;
+    let (entry, exit) = (entry.unwrap_or_default(), exit.unwrap_or_default());
+    let fade = (gap.len() as f64 - 1.0).min(FADE_S * rate_hz).max(0.0);
+    // A gap of one frame has both borders, and each shows half of what the other shows.
+    let share = |k: usize| if fade == 0.0 { 0.5 } else { (1.0 - k as f64 / fade).max(0.0) };
+    let at = |k: usize| {
+        let (near, far) = (share(k), share(gap.len() - 1 - k));
+        std::array::from_fn(|a| near * entry[a] - far * exit[a])
+    };
+    Some((0..gap.len()).map(at).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A marker at rest whose fill stands 0.3 m beside it.
+    fn path(t: usize) -> [f64; 3] {
+        if (10..40).contains(&t) { [0.3, 0.0, 1.0] } else { [0.0, 0.0, 1.0] }
+    }
+
+    #[test]
+    fn a_fill_that_stands_aside_is_drawn_to_the_samples() {
+        let gap = Gap { marker: 0, frames: 10..40 };
+        let off = excess(&|t| Some(path(t)), &gap, 120.0).unwrap();
+        let eased = |t: usize| {
+            let [x, y, z] = path(t);
+            let off = if gap.frames.contains(&t) { off[t - 10] } else { [0.0; 3] };
+            Some([x - off[0], y - off[1], z - off[2]])
+        };
+        let most_m = MOST_ACCELERATION / (120.0 * 120.0);
+        for border in [10, 40] {
+            let step = Step::at(&eased, border).unwrap().step;
+            // The fade itself bends the path a little.
+            assert!(norm(step) < most_m + 0.3 / 29.0, "{step:?}");
+        }
+    }
+
+    #[test]
+    fn steps_that_bodies_make_stay() {
+        let gap = Gap { marker: 0, frames: 10..40 };
+        let small = |t: usize| Some(path(t).map(|c| 0.01 * c));
+        assert!(excess(&small, &gap, 120.0).is_none());
+    }
+}
