@@ -27,7 +27,6 @@ use crate::{
 mod layout;
 mod system;
 
-pub(crate) use layout::ALIKE;
 use layout::Layout;
 use system::System;
 
@@ -84,7 +83,7 @@ pub(crate) fn calibrate(
     body: &Body,
     params: &IkParams,
 ) -> Calibrated {
-    let layout = Layout::new(tree, template, body);
+    let layout = Layout::new(tree, template, body, samples.len());
     let mut cost = layout.cost(tree, samples, params);
     let mut damping = 1e-3;
     for step in 0..STEPS {

@@ -9,7 +9,7 @@ use mocap_core::{
 
 use crate::{
     Body, IkError, IkSolver,
-    calibrate::{self, ALIKE, Sample},
+    calibrate::{self, Sample},
     frame::Seen,
     size,
     start::root_fit,
@@ -66,13 +66,7 @@ impl IkSolver {
         let state = in_pose(&origin, root_fit(&origin, &seen).ok_or_else(lost)?);
         let sample = Sample { seen, pose: Some(state.clone()), state };
         check(&origin, &sample, &template)?;
-        // One pose counts like all the frames in which markers miss alike.
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a small constant"
-        )]
-        let mut samples = vec![sample; ALIKE as usize];
+        let mut samples = [sample];
         let mut tree = origin.clone();
         calibrate::calibrate(&mut tree, &mut samples, &origin, &template, self.params());
         settle(&mut tree, &samples[0]);

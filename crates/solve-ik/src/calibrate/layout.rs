@@ -13,9 +13,9 @@ use crate::{
 
 pub(super) type Matrix = [[f64; 3]; 3];
 
-/// Frames that say as much as one about where a joint or a marker is: skin slides with the pose, and so the markers of
-/// many frames miss in the same way.
-pub(crate) const ALIKE: f64 = 20.0;
+/// Frames that say as much as one about where a joint or a marker is, if there are so many: skin slides with the pose, and so
+/// the markers of many frames miss in the same way.
+const ALIKE: f64 = 20.0;
 /// Spread of a joint's place across its bone over that along it: people differ in lengths rather than in directions.
 const ACROSS: f64 = 0.25;
 
@@ -37,12 +37,13 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    pub(super) fn new(tree: &Tree, template: &Tree, body: &Body) -> Self {
+    pub(super) fn new(tree: &Tree, template: &Tree, body: &Body, samples: usize) -> Self {
+        let alike = ALIKE.min(samples as f64);
         let mut expected = Vec::new();
         let mut offsets = vec![None; tree.len()];
         if body.bone_spread > 0.0 {
-            let along = ALIKE * body.bone_spread.powi(-2);
-            let across = ALIKE * (ACROSS * body.bone_spread).powi(-2);
+            let along = alike * body.bone_spread.powi(-2);
+            let across = alike * (ACROSS * body.bone_spread).powi(-2);
             // The root's own offset is part of its translation.
             for (j, offset) in offsets.iter_mut().enumerate().skip(1) {
                 *offset = Some(expected.len());
@@ -52,7 +53,7 @@ impl Layout {
         }
         let places = expected.len();
         let site = |a: &Anchor| {
-            let weight = ALIKE * body.sites[a.site].spread.powi(-2);
+            let weight = alike * body.sites[a.site].spread.powi(-2);
             (a.place, weights(a.place, weight, weight))
         };
         expected.extend(template.anchors.iter().map(site));
