@@ -81,7 +81,7 @@ fn mean_body(params: &SynthParams, person: impl Fn(u64) -> Option<Person>) -> Bo
     };
     let bone = |j: usize| mean(&|o| o.motion().skeleton().joints()[j].offset_m);
     let place = |m: usize, k: usize| mean(&|o| o.attachments()[m].local_m[k]);
-    body(&others[0], params.hands, &bone, &place, "0.015")
+    body(&others[0], params.hands, &bone, &place, "0.02")
 }
 
 /// A generic body with the true places of one person's markers.
@@ -179,8 +179,14 @@ fn body(
     for (m, Attachment { label, joints: [near, far], share, .. }) in
         like.attachments().iter().enumerate()
     {
-        let spread =
-            if m >= like.take().marker_count() - 2 * hands.per_hand() { "0.004" } else { spread };
+        let spread = if m >= like.take().marker_count() - 2 * hands.per_hand() {
+            "0.004"
+        } else if label.ends_with("HAND") {
+            // What is left open of a hand is left open of its fingers.
+            "0.01"
+        } else {
+            spread
+        };
         // Written from the upper of the two joints.
         let (near, far, share, local) = if *share > 0.0 && joints[*near].parent == Some(*far) {
             (*far, *near, 1.0 - share, place(m, 1))
