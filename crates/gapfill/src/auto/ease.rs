@@ -4,8 +4,9 @@ use mocap_core::{Gap, geometry::norm};
 
 use crate::step::Step;
 
-/// No marker is taken to speed up by more than this: about seven times gravity, as in the hardest kicks.
-const MOST_ACCELERATION: f64 = 72.0;
+/// No marker is taken to speed up by more than this in m/s²: thirty times gravity, more than in any kick. A sample beside a
+/// gap that jumps by itself should not draw the fill along.
+const MOST_ACCELERATION: f64 = 300.0;
 
 /// What a step exceeds this by fades over so many seconds.
 const FADE_S: f64 = 0.25;
