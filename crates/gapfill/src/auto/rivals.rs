@@ -19,11 +19,18 @@ use super::{
 /// Pseudo-gaps of each run of frames, at most.
 const MOST: usize = 16;
 
-/// In one pass they hide one in so many frames of the take, but for the first four of them.
+/// In one pass they hide one in so many frames of the take, but for the first of them: a method must not be judged by
+/// what it makes of a take with little left.
 const HIDDEN: usize = 6;
 
 /// Each method fills the take so many times, each time with other pseudo-gaps.
 const PASSES: usize = 2;
+
+/// Where fewer fit into a pass than this ...
+const FEW: usize = 4;
+
+/// ... there are so many passes.
+const MANY_PASSES: usize = 4;
 
 /// Frames between two pseudo-gaps beyond half their length: what a spline with seeds asks for.
 const SEEDS: usize = 5;
@@ -74,7 +81,7 @@ pub(super) fn compete<'a>(
     let worth_it = |rival: &&Rival| (costly || !rival.costly) && (sighted || !rival.body);
     let asked: Vec<&Rival> = rivals.iter().filter(worth_it).collect();
     let mut fills: Vec<Vec<Option<Filled>>> = vec![Vec::new(); asked.len()];
-    for pass in 0..PASSES {
+    for pass in 0..groups.iter().map(Group::passes).max().unwrap_or(1) {
         let hidden = hidden(take, &groups, pass);
         let visible = take.hide(&hidden).ok().filter(|_| pass == 0 || hidden.count() > 0);
         for (fills, rival) in fills.iter_mut().zip(&asked) {
@@ -125,11 +132,12 @@ impl Group {
         let all_seen =
             |t: usize| t >= take.frames() || missing.iter().all(|&m| take.is_observed(t, m));
         let length = group.gaps[0].len();
-        let most = (take.frames() / (HIDDEN * length)).clamp(4, MOST);
+        let most = (take.frames() / (HIDDEN * length)).clamp(1, MOST);
+        let turns = if most < FEW { MANY_PASSES } else { PASSES };
         let stocks: Option<Vec<&Stock>> = group.gaps.iter().map(stock).collect();
         if let Some(stocks) = stocks.filter(|stocks| tried_alike(stocks)) {
             let whole = |gap: &PseudoGap| gap.hidden.clone().all(all_seen);
-            let passes = passes(&stocks[0].pseudo_gaps, most, &whole);
+            let passes = passes(&stocks[0].pseudo_gaps, most, turns, &whole);
             let kept = |of: &[Vec<[f64; 3]>]| passes.iter().map(|(k, _)| of[*k].clone()).collect();
             if passes.len() > 1 {
                 let restrict = |c: &Candidate| Candidate { errors: kept(&c.errors), ..c.clone() };
@@ -142,8 +150,8 @@ impl Group {
             }
         }
         let seen: Vec<usize> = (0..take.frames()).filter(|&t| all_seen(t)).collect();
-        let cut = ensemble::pseudo_gaps(&seen, length, group.sides(take), 0, PASSES * most);
-        let passes = passes(&cut, most, &|_| true);
+        let cut = ensemble::pseudo_gaps(&seen, length, group.sides(take), 0, turns * most);
+        let passes = passes(&cut, most, turns, &|_| true);
         group.scored = passes.iter().map(|&(k, _)| cut[k].frames.clone().collect()).collect();
         group.pseudo_gaps = passes.iter().map(|&(k, p)| (p, cut[k].clone())).collect();
         group
@@ -152,6 +160,11 @@ impl Group {
     /// The pseudo-gaps of all passes.
     fn tried(&self) -> Vec<PseudoGap> {
         self.pseudo_gaps.iter().map(|(_, gap)| gap.clone()).collect()
+    }
+
+    /// Fills that its pseudo-gaps need; one for the gap itself.
+    fn passes(&self) -> usize {
+        self.pseudo_gaps.iter().map(|(pass, _)| pass + 1).max().unwrap_or(1)
     }
 
     fn sides(&self, take: &Take) -> Sides {
@@ -274,11 +287,12 @@ fn tried_alike(stocks: &[&Stock]) -> bool {
 fn passes(
     all: &[PseudoGap],
     most: usize,
+    turns: usize,
     whole: &dyn Fn(&PseudoGap) -> bool,
 ) -> Vec<(usize, usize)> {
     let mut left: Vec<usize> = (0..all.len()).filter(|&k| whole(&all[k])).collect();
     let mut passes = Vec::new();
-    for pass in 0..PASSES {
+    for pass in 0..turns {
         let mut kept: Vec<usize> = Vec::new();
         for &k in &left {
             let free = |&last: &usize| {
