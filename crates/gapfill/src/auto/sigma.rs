@@ -6,19 +6,18 @@ use mocap_core::geometry::dot;
 /// Correlation times that are tried, in seconds.
 const TIMES_S: [f64; 6] = [0.03, 0.1, 0.3, 1.0, 3.0, 10.0];
 
-/// The root mean square error becomes the radius that holds 68 % of errors by a factor that is 1 for gaps of
-/// this length.
-const PAR_S: f64 = 0.5;
+/// The mixture is the one that errs least in the pseudo-gaps, and so errs by more in the gap: with `n` of them its
+/// variance is larger by a share that goes with 1 + this / n.
+const OPTIMISM: f64 = 4.0;
 
-/// It grows with the length of the gap to this power: the rarer a pose, the longer the gaps that hold one.
-const GROWTH: f64 = 0.05;
+/// The root mean square error in so many pseudo-gaps is the radius that holds 68 % of errors.
+const PAR: f64 = 8.0;
 
 /// Errors that spread from the borders as those of a stationary process that is known there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Spread {
     variance_m2: f64,
     tau: f64,
-    rate_hz: f64,
 }
 
 /// Errors of one pseudo-gap with the frames they belong to.
@@ -44,6 +43,7 @@ impl Spread {
             })
             .collect();
         let total: f64 = samples.iter().map(|s| s.3).sum();
+        let few = optimism(pseudo_gaps);
         TIMES_S
             .iter()
             .map(|seconds| {
@@ -53,7 +53,7 @@ impl Spread {
                 // Three coordinates each; the constant terms do not matter.
                 let cost = samples.iter().map(|s| s.3 * share(s).ln()).sum::<f64>() / total
                     + variance.max(1e-24).ln();
-                (cost, Self { variance_m2: variance, tau, rate_hz })
+                (cost, Self { variance_m2: few * variance, tau })
             })
             .filter(|(cost, _)| cost.is_finite())
             .min_by(|a, b| a.0.total_cmp(&b.0))
@@ -69,10 +69,16 @@ impl Spread {
     /// Sigma in metres of frame `t` of a gap.
     pub fn sigma_m(&self, t: usize, gap: &std::ops::Range<usize>, sides: Sides) -> f64 {
         let (before, after) = distances(t, gap, sides);
-        let seconds = gap.len() as f64 / self.rate_hz;
-        (seconds / PAR_S).powf(GROWTH)
-            * (self.variance_m2 * open_share(before, after, self.tau)).sqrt()
+        (self.variance_m2 * open_share(before, after, self.tau)).sqrt()
     }
+}
+
+/// By how much the variance of errors exceeds that in the pseudo-gaps, of which those that count little are few.
+fn optimism(pseudo_gaps: &[Errors<'_>]) -> f64 {
+    let counts = || pseudo_gaps.iter().filter(|tried| !tried.values.is_empty()).map(|t| t.counts);
+    let squares: f64 = counts().map(|c| c * c).sum();
+    let n = counts().sum::<f64>().powi(2) / squares;
+    if squares > 0.0 { ((1.0 + OPTIMISM / n) / (1.0 + OPTIMISM / PAR)).max(1.0) } else { 1.0 }
 }
 
 /// Frames to the observed sample on either side.
@@ -89,5 +95,28 @@ fn open_share(before: Option<f64>, after: Option<f64>, tau: f64) -> f64 {
         (None, None) => 1.0,
         (Some(d), None) | (None, Some(d)) => lost(d),
         (Some(a), Some(b)) => lost(a) * lost(b) / lost(a + b),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_few_pseudo_gaps_are_too_good() {
+        let both = Sides { left: true, right: true };
+        let gap = PseudoGap { frames: 0..2, hidden: 0..2, sides: both };
+        let (frames, values) = ([0, 1], [[0.01, 0.0, 0.0]; 2]);
+        let tried = |counts: f64| Errors { gap: &gap, frames: &frames, values: &values, counts };
+        let of = |counts: &[f64]| {
+            let tried: Vec<Errors<'_>> = counts.iter().map(|&c| tried(c)).collect();
+            Spread::of(&tried, 100.0).unwrap().sigma_m(0, &(0..2), both)
+        };
+        let many = of(&[1.0; 8]);
+        assert!((of(&[1.0; 20]) / many - 1.0).abs() < 1e-12);
+        assert!(of(&[1.0; 2]) > 1.3 * many);
+        // Those that count for nothing are none.
+        assert!((of(&[1.0, 1.0, 1e-9]) / of(&[1.0; 2]) - 1.0).abs() < 1e-6);
+        assert!(Spread::of(&[], 100.0).is_none());
     }
 }
