@@ -26,14 +26,11 @@ const HIDDEN: usize = 6;
 /// Each method fills the take so many times, each time with other pseudo-gaps.
 const PASSES: usize = 2;
 
-/// Where fewer than this fit into a pass there are more passes.
+/// Where fewer fit into a pass than this ...
 const FEW: usize = 4;
 
-/// So many of them ...
-const MANY_PASSES: usize = 8;
-
-/// ... in takes that miss no more than this share of their samples: with more missing a fill takes long.
-const MOST_OPEN: f64 = 0.15;
+/// ... there are so many passes.
+const MANY_PASSES: usize = 4;
 
 /// Frames between two pseudo-gaps beyond half their length: what a spline with seeds asks for.
 const SEEDS: usize = 5;
@@ -78,11 +75,8 @@ pub(super) fn compete<'a>(
     for gap in gaps {
         alike.entry((gap.frames.start, gap.frames.end)).or_default().push(gap.clone());
     }
-    let open = gaps.iter().map(Gap::len).sum::<usize>() as f64;
-    let whole = (take.frames() * take.marker_count()) as f64;
-    let passes = if open > MOST_OPEN * whole { PASSES } else { MANY_PASSES };
     let groups: Vec<Group> =
-        alike.into_values().map(|gaps| Group::new(take, gaps, stock, passes)).collect();
+        alike.into_values().map(|gaps| Group::new(take, gaps, stock)).collect();
     let sighted = groups.iter().any(|group| !group.is_dark(take));
     let worth_it = |rival: &&Rival| (costly || !rival.costly) && (sighted || !rival.body);
     let asked: Vec<&Rival> = rivals.iter().filter(worth_it).collect();
@@ -131,13 +125,7 @@ fn hidden(take: &Take, groups: &[Group], pass: usize) -> Mask {
 impl Group {
     /// At least one gap, with pseudo-gaps in which all markers that are missing in them are seen: those that other
     /// fills were tried on, where all were tried on the same.
-    /// They are hidden in `passes`, or fewer where many fit into one.
-    fn new<'a>(
-        take: &Take,
-        gaps: Vec<Gap>,
-        stock: &dyn Fn(&Gap) -> Option<&'a Stock>,
-        passes: usize,
-    ) -> Self {
+    fn new<'a>(take: &Take, gaps: Vec<Gap>, stock: &dyn Fn(&Gap) -> Option<&'a Stock>) -> Self {
         let mut group = Self { gaps, pseudo_gaps: Vec::new(), scored: Vec::new(), stocks: None };
         let missing = group.missing(take);
         // What a pseudo-gap hides beyond the take is not there.
@@ -145,11 +133,11 @@ impl Group {
             |t: usize| t >= take.frames() || missing.iter().all(|&m| take.is_observed(t, m));
         let length = group.gaps[0].len();
         let most = (take.frames() / (HIDDEN * length)).clamp(1, MOST);
-        let turns = if most < FEW { passes } else { PASSES };
+        let turns = if most < FEW { MANY_PASSES } else { PASSES };
         let stocks: Option<Vec<&Stock>> = group.gaps.iter().map(stock).collect();
         if let Some(stocks) = stocks.filter(|stocks| tried_alike(stocks)) {
             let whole = |gap: &PseudoGap| gap.hidden.clone().all(all_seen);
-            let passes = in_passes(&stocks[0].pseudo_gaps, most, turns, &whole);
+            let passes = passes(&stocks[0].pseudo_gaps, most, turns, &whole);
             let kept = |of: &[Vec<[f64; 3]>]| passes.iter().map(|(k, _)| of[*k].clone()).collect();
             if passes.len() > 1 {
                 let restrict = |c: &Candidate| Candidate { errors: kept(&c.errors), ..c.clone() };
@@ -163,7 +151,7 @@ impl Group {
         }
         let seen: Vec<usize> = (0..take.frames()).filter(|&t| all_seen(t)).collect();
         let cut = ensemble::pseudo_gaps(&seen, length, group.sides(take), 0, turns * most);
-        let passes = in_passes(&cut, most, turns, &|_| true);
+        let passes = passes(&cut, most, turns, &|_| true);
         group.scored = passes.iter().map(|&(k, _)| cut[k].frames.clone().collect()).collect();
         group.pseudo_gaps = passes.iter().map(|&(k, p)| (p, cut[k].clone())).collect();
         group
@@ -296,7 +284,7 @@ fn tried_alike(stocks: &[&Stock]) -> bool {
 
 /// Pseudo-gaps by number with the pass in which they are hidden: in each, at most so many of those that are `whole`,
 /// spread over the take, with half their length between them.
-fn in_passes(
+fn passes(
     all: &[PseudoGap],
     most: usize,
     turns: usize,
