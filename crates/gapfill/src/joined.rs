@@ -6,7 +6,7 @@ use mocap_core::{
 };
 use ndarray::Array2;
 
-use crate::step::Step;
+use crate::step::offsets;
 
 /// What becomes of the step between the measured samples beside a gap and the fill.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -75,13 +75,8 @@ fn join(input: &Take, filled: &Filled) -> Result<Filled, mocap_core::CoreError> 
 
 /// What to take off each frame of a gap, in metres.
 fn shifts(take: &Take, gap: &Gap) -> Vec<[f64; 3]> {
-    let single = gap.len() == 1;
-    let at = |t: usize| (t < take.frames()).then(|| take.position(t, gap.marker)).flatten();
-    let entry = Step::at(&at, gap.frames.start);
-    let exit = Step::at(&at, gap.frames.end);
-    // In a gap of one frame the move on its far side shows the same offset once more.
-    let entry = entry.map(|s| s.offset(if single { s.later_share } else { 0.0 }));
-    let exit = exit.map(|s| scale(-1.0, s.offset(if single { 1.0 - s.later_share } else { 0.0 })));
+    let path = |t: usize| (t < take.frames()).then(|| take.position(t, gap.marker)).flatten();
+    let [entry, exit] = offsets(&path, &gap.frames);
     let last = gap.len().saturating_sub(1);
     let share = |k: usize| if last == 0 { 0.5 } else { k as f64 / last as f64 };
     let at = |k: usize| match (entry, exit) {

@@ -1,8 +1,11 @@
 //! A bound on the steps at the borders of a gap.
 
-use mocap_core::{Gap, geometry::norm};
+use mocap_core::{
+    Gap,
+    geometry::{add, norm, scale},
+};
 
-use crate::step::Step;
+use crate::step::offsets;
 
 /// No marker is taken to speed up by more than this in m/s²: thirty times gravity, more than in any kick. A sample beside a
 /// gap that jumps by itself should not draw the fill along.
@@ -21,20 +24,18 @@ pub(super) fn excess(
     rate_hz: f64,
 ) -> Option<Vec<[f64; 3]>> {
     let most_m = MOST_ACCELERATION / (rate_hz * rate_hz);
-    let over = |border: usize| {
-        let step = Step::at(path, border)?.step;
-        (norm(step) > most_m).then(|| step.map(|c| (1.0 - most_m / norm(step)) * c))
+    let offsets = offsets(path, &gap.frames);
+    let over = |offset: [f64; 3]| {
+        (norm(offset) > most_m).then(|| scale(1.0 - most_m / norm(offset), offset))
     };
-    let (entry, exit) = (over(gap.frames.start), over(gap.frames.end));
+    let [entry, exit] = offsets.map(|offset| offset.and_then(over));
     entry.or(exit)?;
     let (entry, exit) = (entry.unwrap_or_default(), exit.unwrap_or_default());
-    let fade = (gap.len() as f64 - 1.0).min(FADE_S * rate_hz).max(0.0);
-    // A gap of one frame has both borders, and each shows half of what the other shows.
-    let share = |k: usize| if fade == 0.0 { 0.5 } else { (1.0 - k as f64 / fade).max(0.0) };
-    let at = |k: usize| {
-        let (near, far) = (share(k), share(gap.len() - 1 - k));
-        std::array::from_fn(|a| near * entry[a] - far * exit[a])
-    };
+    let fade = (gap.len() as f64 - 1.0).min(FADE_S * rate_hz);
+    // Both borders of a gap of one frame show its offset.
+    let alone = if offsets.iter().all(Option::is_some) { 0.5 } else { 1.0 };
+    let share = |k: usize| if gap.len() == 1 { alone } else { (1.0 - k as f64 / fade).max(0.0) };
+    let at = |k: usize| add(scale(share(k), entry), scale(share(gap.len() - 1 - k), exit));
     Some((0..gap.len()).map(at).collect())
 }
 
@@ -57,10 +58,23 @@ mod tests {
             Some([x - off[0], y - off[1], z - off[2]])
         };
         let most_m = MOST_ACCELERATION / (120.0 * 120.0);
-        for border in [10, 40] {
-            let step = Step::at(&eased, border).unwrap().step;
+        for offset in offsets(&eased, &gap.frames).map(Option::unwrap) {
             // The fade itself bends the path a little.
-            assert!(norm(step) < most_m + 0.3 / 29.0, "{step:?}");
+            assert!(norm(offset) < most_m + 0.3 / 29.0, "{offset:?}");
+        }
+    }
+
+    /// What both borders show of one frame is taken off once.
+    #[test]
+    fn a_single_frame_is_drawn_to_the_samples() {
+        let frame = |t: usize| if t == 10 { [0.3, 0.0, 1.0] } else { [0.0, 0.0, 1.0] };
+        let most_m = MOST_ACCELERATION / (120.0 * 120.0);
+        let off = |until: usize| {
+            let seen = |t: usize| (t < until).then(|| frame(t));
+            excess(&seen, &Gap { marker: 0, frames: 10..11 }, 120.0).unwrap()[0]
+        };
+        for off in [off(20), off(11)] {
+            assert!((off[0] - (0.3 - most_m)).abs() < 1e-12, "{off:?}");
         }
     }
 

@@ -9,9 +9,9 @@ pub(super) const OF_MODELS: f64 = 0.5;
 /// its length, if errors grow with the length to the power `growth`.
 ///
 /// Without it a curve that is good for short pseudo-gaps would win a gap that only a model of the body can bridge.
-pub(super) fn extrapolate(
+pub(super) fn extrapolate<'a>(
     candidate: &mut Candidate,
-    pseudo_gaps: &[PseudoGap],
+    pseudo_gaps: impl IntoIterator<Item = &'a PseudoGap>,
     frames: usize,
     growth: f64,
 ) {

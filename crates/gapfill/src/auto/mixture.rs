@@ -139,9 +139,7 @@ fn mean_square(errors: &[Vec<[f64; 3]>], likeness: &[f64]) -> Option<f64> {
     let of_gap = |errors: &Vec<[f64; 3]>| {
         errors.iter().map(|&e| dot(e, e)).sum::<f64>() / errors.len() as f64
     };
-    let known = || errors.iter().zip(likeness).filter(|(e, _)| !e.is_empty());
-    let counted: f64 = known().map(|(_, counts)| counts).sum();
-    (counted > 0.0).then(|| known().map(|(e, counts)| counts * of_gap(e)).sum::<f64>() / counted)
+    stack::weighted_mean(errors.iter().map(of_gap), errors, likeness)
 }
 
 /// Mean square distance of the candidates from their mixture in the gap, as a multiple of that in pseudo-gaps: the more

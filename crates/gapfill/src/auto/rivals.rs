@@ -52,6 +52,8 @@ pub(super) struct Answer {
 /// Markers that are missing in the same frames.
 struct Group {
     gaps: Vec<Gap>,
+    /// Markers that are missing in any of their frames.
+    missing: Vec<usize>,
     /// Pseudo-gaps with the pass in which they are hidden.
     pseudo_gaps: Vec<(usize, PseudoGap)>,
     /// Frames of each that errors are known in.
@@ -110,10 +112,9 @@ pub(super) fn compete<'a>(
 fn hidden(take: &Take, groups: &[Group], pass: usize) -> Mask {
     let mut hidden = Mask::none(take.frames(), take.marker_count());
     for group in groups {
-        let missing = group.missing(take);
         for (_, gap) in group.pseudo_gaps.iter().filter(|(at, _)| *at == pass) {
             for t in gap.hidden.start..gap.hidden.end.min(take.frames()) {
-                for &m in &missing {
+                for &m in &group.missing {
                     let _ = hidden.insert(t, m);
                 }
             }
@@ -126,8 +127,12 @@ impl Group {
     /// At least one gap, with pseudo-gaps in which all markers that are missing in them are seen: those that other
     /// fills were tried on, where all were tried on the same.
     fn new<'a>(take: &Take, gaps: Vec<Gap>, stock: &dyn Fn(&Gap) -> Option<&'a Stock>) -> Self {
-        let mut group = Self { gaps, pseudo_gaps: Vec::new(), scored: Vec::new(), stocks: None };
-        let missing = group.missing(take);
+        let frames = &gaps[0].frames;
+        let is_missing = |m: &usize| frames.clone().any(|t| !take.is_observed(t, *m));
+        let missing: Vec<usize> = (0..take.marker_count()).filter(is_missing).collect();
+        let mut group =
+            Self { gaps, missing, pseudo_gaps: Vec::new(), scored: Vec::new(), stocks: None };
+        let missing = group.missing.clone();
         // What a pseudo-gap hides beyond the take is not there.
         let all_seen =
             |t: usize| t >= take.frames() || missing.iter().all(|&m| take.is_observed(t, m));
@@ -157,11 +162,6 @@ impl Group {
         group
     }
 
-    /// The pseudo-gaps of all passes.
-    fn tried(&self) -> Vec<PseudoGap> {
-        self.pseudo_gaps.iter().map(|(_, gap)| gap.clone()).collect()
-    }
-
     /// Fills that its pseudo-gaps need; one for the gap itself.
     fn passes(&self) -> usize {
         self.pseudo_gaps.iter().map(|(pass, _)| pass + 1).max().unwrap_or(1)
@@ -170,13 +170,6 @@ impl Group {
     fn sides(&self, take: &Take) -> Sides {
         let frames = &self.gaps[0].frames;
         Sides { left: frames.start > 0, right: frames.end < take.frames() }
-    }
-
-    /// Markers that are missing in any of the frames.
-    fn missing(&self, take: &Take) -> Vec<usize> {
-        let frames = &self.gaps[0].frames;
-        let missing = |m: &usize| frames.clone().any(|t| !take.is_observed(t, *m));
-        (0..take.marker_count()).filter(missing).collect()
     }
 
     /// Whether a rival can know anything of the gaps. What neighbours fill well is not left to methods that depend on
@@ -189,7 +182,7 @@ impl Group {
 
     /// Whether no marker is seen in all of its frames.
     fn is_dark(&self, take: &Take) -> bool {
-        self.missing(take).len() == take.marker_count()
+        self.missing.len() == take.marker_count()
     }
 
     /// What a rival made of a gap and its pseudo-gaps, by pass; `None` where it left some of them open, or went where
@@ -216,7 +209,8 @@ impl Group {
         let errors =
             self.pseudo_gaps.iter().zip(&self.scored).map(errors).collect::<Option<_>>()?;
         let mut candidate = Candidate { name: rival.name, positions, errors };
-        growth::extrapolate(&mut candidate, &self.tried(), gap.len(), rival.growth);
+        let tried = self.pseudo_gaps.iter().map(|(_, gap)| gap);
+        growth::extrapolate(&mut candidate, tried, gap.len(), rival.growth);
         Some(candidate)
     }
 
@@ -238,7 +232,8 @@ impl Group {
         }
         let names = |of: &Vec<Candidate>| of.iter().map(|c| c.name).collect::<Vec<_>>();
         let alike = candidates.windows(2).all(|two| names(&two[0]) == names(&two[1]));
-        let pseudo_gaps = self.tried();
+        let pseudo_gaps: Vec<PseudoGap> =
+            self.pseudo_gaps.iter().map(|(_, gap)| gap.clone()).collect();
         let runs: Vec<_> = pseudo_gaps.iter().map(|gap| gap.frames.clone()).collect();
         let likeness = |gap: &Gap| pace::likeness(take, gap.marker, &gap.frames, &runs);
         let likeness: Vec<Vec<f64>> = self.gaps.iter().map(likeness).collect();

@@ -109,7 +109,7 @@ fn strayed(candidates: &[Candidate], mut products: Vec<f64>, likeness: &[f64]) -
         // From the differences themselves: those of products would be lost in rounding where candidates are alike.
         let apart = |(a, b): (&Vec<[f64; 3]>, &Vec<[f64; 3]>)| mean_square_distance(a, b);
         let errors = candidates[k].errors.iter().zip(&candidates[best].errors).map(apart);
-        let there = weighted_mean(errors, &candidates[best].errors, likeness);
+        let there = weighted_mean(errors, &candidates[best].errors, likeness).unwrap_or(0.0);
         let here = mean_square_distance(&candidates[k].positions, &candidates[best].positions);
         (here / (there + 1e-18) / STRAYS).sqrt().max(1.0)
     };
@@ -128,7 +128,7 @@ fn products(candidates: &[Candidate], likeness: &[f64]) -> Vec<f64> {
         for j in 0..=i {
             let (a, b) = (&candidates[i].errors, &candidates[j].errors);
             let of_gaps = a.iter().zip(b).map(|(a, b)| mean_product(a, b));
-            let mean = weighted_mean(of_gaps, a, likeness);
+            let mean = weighted_mean(of_gaps, a, likeness).unwrap_or(0.0);
             products[i * n + j] = mean;
             products[j * n + i] = mean;
         }
@@ -136,17 +136,17 @@ fn products(candidates: &[Candidate], likeness: &[f64]) -> Vec<f64> {
     products
 }
 
-/// Of values by pseudo-gap, those without any errors left out.
-fn weighted_mean(
+/// Of values by pseudo-gap, those without any errors left out; `None` where that leaves none.
+pub(super) fn weighted_mean(
     values: impl Iterator<Item = f64>,
     errors: &[Vec<[f64; 3]>],
     likeness: &[f64],
-) -> f64 {
+) -> Option<f64> {
     let known = values.zip(errors).zip(likeness).filter(|((_, errors), _)| !errors.is_empty());
     let (sum, counted) = known.fold((0.0, 0.0), |(sum, counted), ((value, _), counts)| {
         (sum + counts * value, counted + counts)
     });
-    if counted > 0.0 { sum / counted } else { 0.0 }
+    (counted > 0.0).then(|| sum / counted)
 }
 
 fn mean_square_distance(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
