@@ -19,7 +19,7 @@ mod outputs;
 
 /// Make a synthetic recording of a moving body whose truth is known
 ///
-/// A body walks, runs, jumps, throws, turns, reaches or kicks, or does what a recorded skeleton does, and wears markers
+/// A body walks, runs, jumps, throws, turns, reaches, kicks, leaps or goes round corners, or does what a recorded skeleton does, and wears markers
 /// that slide with the skin and are measured with noise. Nothing of it is captured: files may be shipped freely. The same
 /// options give the same bytes, on any machine.
 #[derive(Debug, Args)]
@@ -39,7 +39,7 @@ stature, lengths and girths drawn together as in surveys, and markers on the per
 Truth: -o holds what cameras would measure; --truth where the markers were, without noise and gaps; --joints the skeleton,
 with y up as readers of BVH and ASF/AMC expect, or as JSON with z up like the markers.")]
 pub(crate) struct Synth {
-    /// What the body does: walk, run, jump, throw, turn, reach, kick, or a file with joint motion (.amc, .bvh)
+    /// What the body does: walk, run, jump, throw, turn, reach, kick, leap, corner, or a file with joint motion (.amc, .bvh)
     #[arg(long, value_name = "NAME|FILE")]
     motion: String,
     /// Skeleton of an AMC file; by default the ASF file beside it

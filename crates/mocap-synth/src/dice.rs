@@ -30,6 +30,11 @@ impl Dice {
         Self { rng, spare: None }
     }
 
+    /// Numbers of their own, so that it does not matter how many of them are drawn.
+    pub(crate) fn fork(&mut self) -> Self {
+        Self::new(self.rng.next_u64(), Stream::Motion)
+    }
+
     /// Uniform in `[0, 1)`, on the grid of 2⁻⁵³.
     pub(crate) fn unit(&mut self) -> f64 {
         (self.rng.next_u64() >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)

@@ -32,7 +32,9 @@ pub enum SynthError {
         unit: &'static str,
     },
     /// A word that names no activity.
-    #[error("`{word}` is no activity; choose one of walk, run, jump, throw, turn, reach, kick")]
+    #[error(
+        "`{word}` is no activity; choose one of walk, run, jump, throw, turn, reach, kick, leap, corner"
+    )]
     UnknownActivity {
         /// The word as given.
         word: String,

@@ -1,9 +1,9 @@
 //! How a person moves in their own way, whatever they do.
 
 use crate::{
-    curve::Wobble,
+    curve::Drift,
     dice::Dice,
-    math::degrees,
+    math::{degrees, sin_cos},
     rig::{Arm, Posture},
 };
 
@@ -12,10 +12,23 @@ pub(crate) struct Habits {
     /// Of the trunk and the head, ahead.
     lean: f64,
     nod: f64,
-    head: [Wobble; 2],
-    trunk: [Wobble; 2],
+    head: [Drift; 2],
+    trunk: [Drift; 2],
     /// Left, right.
     arms: [ArmHabit; 2],
+    sway: Sway,
+}
+
+/// Nobody stands still: the weight wanders between the feet, and everything above follows.
+struct Sway {
+    /// Ahead and to the left, in metres.
+    weight: [Drift; 2],
+    /// Pitch, roll and turn of the pelvis, the trunk and the head.
+    pelvis: [Drift; 3],
+    trunk: [Drift; 3],
+    head: [Drift; 3],
+    /// Flexion, abduction and bend of either arm.
+    arms: [[Drift; 3]; 2],
 }
 
 struct ArmHabit {
@@ -24,7 +37,7 @@ struct ArmHabit {
     wrist: f64,
     pronation: f64,
     /// Of the wrist, of the forearm's turn and of the elbow.
-    waves: [Wobble; 3],
+    waves: [Drift; 3],
 }
 
 impl Habits {
@@ -36,15 +49,16 @@ impl Habits {
         Self {
             lean: degrees(dice.jitter(2.5)),
             nod: degrees(4.0 + dice.jitter(6.0)),
-            head: [5.0, 4.0].map(|rms| Wobble::new(dice, degrees(rms), 0.05, 0.5)),
-            trunk: [1.6, 1.6].map(|rms| Wobble::new(dice, degrees(rms), 0.08, 0.6)),
+            head: [5.0, 4.0].map(|rms| Drift::new(dice, degrees(rms), 0.05, 0.5)),
+            trunk: [1.6, 1.6].map(|rms| Drift::new(dice, degrees(rms), 0.08, 0.6)),
             arms: [0, 1].map(|_| ArmHabit {
                 elbow: elbow + degrees(dice.jitter(3.0)),
                 abduction: degrees(dice.jitter(3.0)),
                 wrist: wrist + degrees(dice.jitter(4.0)),
                 pronation: pronation + degrees(dice.jitter(6.0)),
-                waves: [6.0, 6.0, 3.0].map(|rms| Wobble::new(dice, degrees(rms), 0.1, 1.1)),
+                waves: [6.0, 6.0, 3.0].map(|rms| Drift::new(dice, degrees(rms), 0.1, 1.1)),
             }),
+            sway: Sway::new(dice),
         }
     }
 
@@ -58,6 +72,46 @@ impl Habits {
         posture.head.yaw += self.head[1].at(time) - twist;
         for (arm, habit) in posture.arms.iter_mut().zip(&self.arms) {
             habit.put_on(arm, time);
+        }
+        self.sway.put_on(posture, time);
+    }
+}
+
+impl Sway {
+    fn new(dice: &mut Dice) -> Self {
+        // Some are more restless than others.
+        let unrest = dice.around(1.0, 0.3);
+        let mut angles = |rms: [f64; 3], high: f64| {
+            rms.map(|rms| Drift::new(dice, unrest * degrees(rms), 0.15, high))
+        };
+        let pelvis = angles([0.7, 0.5, 0.8], 1.6);
+        let trunk = angles([0.8, 0.6, 0.9], 2.0);
+        let head = angles([1.2, 0.8, 1.4], 2.5);
+        let arms = [0, 1].map(|_| angles([1.6, 0.8, 1.8], 2.5));
+        // A few millimetres, most of it slow.
+        let weight = [0.005, 0.007].map(|rms| Drift::new(dice, unrest * rms, 0.08, 1.3));
+        Self { weight, pelvis, trunk, head, arms }
+    }
+
+    fn put_on(&self, posture: &mut Posture, time: f64) {
+        let (s, c) = sin_cos(posture.pelvis.yaw);
+        let [ahead, left] = [0, 1].map(|i| self.weight[i].at(time));
+        posture.pelvis_m[0] += c * ahead - s * left;
+        posture.pelvis_m[1] += s * ahead + c * left;
+        let parts = [
+            (&mut posture.pelvis, &self.pelvis),
+            (&mut posture.trunk, &self.trunk),
+            (&mut posture.head, &self.head),
+        ];
+        for (tilt, drifts) in parts {
+            tilt.pitch += drifts[0].at(time);
+            tilt.roll += drifts[1].at(time);
+            tilt.yaw += drifts[2].at(time);
+        }
+        for (arm, drifts) in posture.arms.iter_mut().zip(&self.arms) {
+            arm.flexion += drifts[0].at(time);
+            arm.abduction += drifts[1].at(time);
+            arm.elbow = (arm.elbow + drifts[2].at(time)).max(degrees(2.0));
         }
     }
 }

@@ -8,10 +8,14 @@ use crate::{Hands, Layout, Person, SynthError};
 pub enum Activity {
     /// Walks round a small oval track at about 1.3 m/s.
     Walk,
+    /// Walks straight on and round sharp corners, to the left and to the right.
+    Corner,
     /// Runs round a larger track at about 3 m/s.
     Run,
     /// Jumps from both feet again and again: crouch, take-off, flight, landing.
     Jump,
+    /// Jumps as far as it gets, with both arms swinging.
+    Leap,
     /// Throws overarm with the right hand again and again: wind-up, step, throw, follow-through.
     Throw,
     /// Turns on the spot with small steps, the head ahead of the body.
@@ -24,8 +28,17 @@ pub enum Activity {
 
 impl Activity {
     /// Every activity.
-    pub const ALL: [Self; 7] =
-        [Self::Walk, Self::Run, Self::Jump, Self::Throw, Self::Turn, Self::Reach, Self::Kick];
+    pub const ALL: [Self; 9] = [
+        Self::Walk,
+        Self::Run,
+        Self::Jump,
+        Self::Throw,
+        Self::Turn,
+        Self::Reach,
+        Self::Kick,
+        Self::Leap,
+        Self::Corner,
+    ];
 
     /// Name as users type it.
     #[must_use]
@@ -34,6 +47,8 @@ impl Activity {
             Self::Walk => "walk",
             Self::Run => "run",
             Self::Jump => "jump",
+            Self::Leap => "leap",
+            Self::Corner => "corner",
             Self::Throw => "throw",
             Self::Turn => "turn",
             Self::Reach => "reach",

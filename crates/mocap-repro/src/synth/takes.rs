@@ -25,107 +25,153 @@ pub(super) struct Group {
 #[derive(Debug, Default)]
 pub(super) struct Rates {
     pub takes: usize,
-    /// Speeds in m/s, accelerations in m/s².
-    pub values: [Vec<f64>; 2],
+    /// Speeds in m/s, accelerations in m/s² as short and as long spans show them.
+    pub values: [Vec<f64>; 3],
 }
 
 /// An activity and the recordings that show the like.
 struct Captured {
     activity: Activity,
-    /// Joint motion, below `cmu`, without the ending.
+    /// Joint motion, without the ending.
     motions: &'static [&'static str],
-    /// Marker files, below `cmu`.
+    /// Marker files.
     markers: &'static [&'static str],
 }
 
-/// By the database's own descriptions. Of reaching there is drinking and scooping, of turning walks round a corner, of
-/// kicking one ball; throwing has markers alone.
-const CAPTURED: [Captured; 7] = [
+/// By the databases' own descriptions, CMU's and HDM05's. Of reaching there is drinking, scooping, grabbing and putting
+/// down, of kicking one ball and kicks into the air; throwing and jumping far have markers alone. Nobody turns on the spot.
+const CAPTURED: [Captured; 8] = [
     Captured {
         activity: Activity::Walk,
         motions: &[
-            "paired/02_01",
-            "asfamc/02/02_02",
-            "asfamc/05/05_01",
-            "asfamc/07/07_01",
-            "asfamc/07/07_02",
-            "asfamc/07/07_06",
-            "asfamc/07/07_07",
-            "asfamc/07/07_08",
-            "asfamc/07/07_09",
-            "asfamc/07/07_10",
-            "asfamc/07/07_11",
-            "asfamc/16/16_22",
-            "asfamc/16/16_23",
-            "asfamc/16/16_24",
-            "asfamc/16/16_25",
-            "asfamc/16/16_26",
-            "asfamc/16/16_27",
-            "asfamc/16/16_29",
+            "cmu/paired/02_01",
+            "cmu/asfamc/02/02_02",
+            "cmu/asfamc/05/05_01",
+            "cmu/asfamc/07/07_01",
+            "cmu/asfamc/07/07_02",
+            "cmu/asfamc/07/07_06",
+            "cmu/asfamc/07/07_07",
+            "cmu/asfamc/07/07_08",
+            "cmu/asfamc/07/07_09",
+            "cmu/asfamc/07/07_10",
+            "cmu/asfamc/07/07_11",
+            "cmu/asfamc/16/16_22",
+            "cmu/asfamc/16/16_23",
+            "cmu/asfamc/16/16_24",
+            "cmu/asfamc/16/16_25",
+            "cmu/asfamc/16/16_26",
+            "cmu/asfamc/16/16_27",
+            "cmu/asfamc/16/16_29",
         ],
-        markers: &["paired/02_01.c3d"],
+        markers: &["cmu/paired/02_01.c3d"],
     },
     Captured {
         activity: Activity::Run,
         motions: &[
-            "asfamc/02/02_03",
-            "asfamc/09/09_01",
-            "asfamc/09/09_02",
-            "asfamc/09/09_03",
-            "asfamc/09/09_04",
-            "asfamc/09/09_05",
-            "asfamc/09/09_06",
-            "asfamc/09/09_07",
-            "asfamc/09/09_08",
-            "asfamc/09/09_09",
-            "asfamc/09/09_10",
-            "asfamc/09/09_11",
-            "asfamc/16/16_35",
-            "asfamc/16/16_36",
-            "asfamc/16/16_37",
-            "asfamc/16/16_39",
-            "asfamc/16/16_45",
-            "asfamc/16/16_46",
-            "asfamc/127/127_03",
-            "asfamc/127/127_06",
-            "paired/127_07",
-            "asfamc/127/127_08",
+            "cmu/asfamc/02/02_03",
+            "cmu/asfamc/09/09_01",
+            "cmu/asfamc/09/09_02",
+            "cmu/asfamc/09/09_03",
+            "cmu/asfamc/09/09_04",
+            "cmu/asfamc/09/09_05",
+            "cmu/asfamc/09/09_06",
+            "cmu/asfamc/09/09_07",
+            "cmu/asfamc/09/09_08",
+            "cmu/asfamc/09/09_09",
+            "cmu/asfamc/09/09_10",
+            "cmu/asfamc/09/09_11",
+            "cmu/asfamc/16/16_35",
+            "cmu/asfamc/16/16_36",
+            "cmu/asfamc/16/16_37",
+            "cmu/asfamc/16/16_39",
+            "cmu/asfamc/16/16_45",
+            "cmu/asfamc/16/16_46",
+            "cmu/asfamc/127/127_03",
+            "cmu/asfamc/127/127_06",
+            "cmu/paired/127_07",
+            "cmu/asfamc/127/127_08",
         ],
-        markers: &["bolero-nine/127_07.csv.gz"],
+        markers: &["cmu/bolero-nine/127_07.csv.gz"],
     },
     Captured {
         activity: Activity::Jump,
-        motions: &["asfamc/16/16_01", "asfamc/16/16_04", "asfamc/16/16_05", "asfamc/02/02_04"],
-        markers: &["bolero-nine/141_04.csv.gz"],
+        motions: &[
+            "cmu/asfamc/16/16_01",
+            "cmu/asfamc/16/16_04",
+            "cmu/asfamc/16/16_05",
+            "cmu/asfamc/02/02_04",
+            "hdm05/asfamc/HDM_bd_hopBothLegs1hops_001_120",
+            "hdm05/asfamc/HDM_bk_hopBothLegs1hops_013_120",
+            "hdm05/asfamc/HDM_dg_hopBothLegs1hops_022_120",
+            "hdm05/asfamc/HDM_mm_hopBothLegs1hops_031_120",
+            "hdm05/asfamc/HDM_tr_hopBothLegs1hops_034_120",
+        ],
+        markers: &[],
     },
-    Captured { activity: Activity::Throw, motions: &[], markers: &["bolero-nine/143_22.csv.gz"] },
     Captured {
-        activity: Activity::Turn,
-        motions: &["asfamc/16/16_27", "asfamc/16/16_28", "asfamc/16/16_29", "asfamc/16/16_30"],
+        activity: Activity::Leap,
+        motions: &[],
+        markers: &["cmu/bolero-nine/141_04.csv.gz"],
+    },
+    Captured {
+        activity: Activity::Throw,
+        motions: &[],
+        markers: &["cmu/bolero-nine/143_22.csv.gz"],
+    },
+    Captured {
+        activity: Activity::Corner,
+        motions: &[
+            "cmu/asfamc/16/16_27",
+            "cmu/asfamc/16/16_28",
+            "cmu/asfamc/16/16_29",
+            "cmu/asfamc/16/16_30",
+        ],
         markers: &[],
     },
     Captured {
         activity: Activity::Reach,
-        motions: &["asfamc/14/14_04", "asfamc/14/14_05", "asfamc/14/14_37", "asfamc/02/02_06"],
+        motions: &[
+            "cmu/asfamc/14/14_04",
+            "cmu/asfamc/14/14_05",
+            "cmu/asfamc/14/14_37",
+            "cmu/asfamc/02/02_06",
+            "hdm05/asfamc/HDM_bd_depositFloorR_001_120",
+            "hdm05/asfamc/HDM_dg_depositFloorR_013_120",
+            "hdm05/asfamc/HDM_mm_depositFloorR_019_120",
+            "hdm05/asfamc/HDM_bd_grabHighR_001_120",
+            "hdm05/asfamc/HDM_bk_grabHighR_005_120",
+            "hdm05/asfamc/HDM_dg_grabHighR_011_120",
+            "hdm05/asfamc/HDM_mm_grabHighR_017_120",
+            "hdm05/asfamc/HDM_tr_grabHighR_023_120",
+        ],
         markers: &[],
     },
-    Captured { activity: Activity::Kick, motions: &["asfamc/11/11_01"], markers: &[] },
+    Captured {
+        activity: Activity::Kick,
+        motions: &[
+            "cmu/asfamc/11/11_01",
+            "hdm05/asfamc/HDM_bd_kickLFront1Reps_001_120",
+            "hdm05/asfamc/HDM_bk_kickLFront1Reps_007_120",
+            "hdm05/asfamc/HDM_mm_kickLFront1Reps_019_120",
+            "hdm05/asfamc/HDM_tr_kickLFront1Reps_025_120",
+        ],
+        markers: &[],
+    },
 ];
 
 /// Rate of the recordings, which their tables do not state.
 const RATE_HZ: f64 = 120.0;
-/// Frames on either side of a central difference, of accelerations and of speeds.
-const WIDE: usize = 4;
+/// Frames on either side of a central difference: of speeds, and of accelerations twice. Over the short span the jitter of
+/// a captured joint, which is a fit frame by frame, weighs as much as the movement of someone who stands.
 const NARROW: usize = 1;
+const SPANS: [usize; 2] = [4, 10];
 
 /// Reads what is there, and synthesises as much of each activity.
 pub(super) fn read(data: &Path, progress: &mut dyn FnMut(&str)) -> Result<Vec<Group>, ReproError> {
     let paths = |captured: &Captured| {
         let motions = captured.motions.iter().map(|name| format!("{name}.amc"));
         let all = motions.chain(captured.markers.iter().map(|name| (*name).to_owned()));
-        all.map(|name| data.join("cmu").join(name))
-            .filter(|path| path.is_file())
-            .collect::<Vec<_>>()
+        all.map(|name| data.join(name)).filter(|path| path.is_file()).collect::<Vec<_>>()
     };
     if CAPTURED.iter().all(|captured| paths(captured).is_empty()) {
         return Err(ReproError::NoTakes { folder: data.to_owned() });
@@ -252,17 +298,20 @@ impl Rates {
     }
 
     fn add(&mut self, rate_hz: f64, frames: usize, at: impl Fn(usize) -> Option<[f64; 3]>) {
-        let step_s = WIDE as f64 / rate_hz;
-        for t in WIDE..frames.saturating_sub(WIDE) {
-            let near = [t - NARROW, t, t + NARROW].map(&at);
-            let far = [t - WIDE, t, t + WIDE].map(&at);
-            let ([Some(p), Some(_), Some(r)], [Some(a), Some(b), Some(c)]) = (near, far) else {
-                continue;
-            };
+        for t in NARROW..frames.saturating_sub(NARROW) {
+            let [Some(p), Some(r)] = [t - NARROW, t + NARROW].map(&at) else { continue };
             let speed = [0, 1, 2].map(|k| 0.5 * (r[k] - p[k]) * rate_hz / NARROW as f64);
-            let bend = [0, 1, 2].map(|k| (c[k] - 2.0 * b[k] + a[k]) / (step_s * step_s));
             self.values[0].push(norm(speed));
-            self.values[1].push(norm(bend));
+        }
+        for (n, span) in SPANS.into_iter().enumerate() {
+            let step_s = span as f64 / rate_hz;
+            for t in span..frames.saturating_sub(span) {
+                let [Some(a), Some(b), Some(c)] = [t - span, t, t + span].map(&at) else {
+                    continue;
+                };
+                let bend = [0, 1, 2].map(|k| (c[k] - 2.0 * b[k] + a[k]) / (step_s * step_s));
+                self.values[1 + n].push(norm(bend));
+            }
         }
     }
 }

@@ -1,4 +1,9 @@
-use super::{Choreography, LEAD_S, track::Track};
+use super::{
+    Choreography, LEAD_S,
+    corners::Corners,
+    style::Style,
+    track::{Spot, Track},
+};
 use crate::{
     body::{Body, SIDE},
     curve::{Timeline, Wobble, ease, hop, lerp},
@@ -6,123 +11,6 @@ use crate::{
     math::{TAU, atan2, cos, degrees, sin},
     rig::{Arm, FootTarget, Pivot, Posture, Tilt, pitched_ankle},
 };
-
-/// What tells walking from running. Lengths in metres of the template, angles in radians, phases as
-/// shares of a cycle (two steps) from a foot's first contact.
-#[derive(Clone, Copy)]
-pub(crate) struct Style {
-    cycles_hz: f64,
-    stride: f64,
-    radius: f64,
-    /// Share of the cycle in which a foot is on the ground.
-    stance: f64,
-    /// Of the ankle before the pelvis at contact.
-    lead: f64,
-    /// From the track's middle to a footprint.
-    width: f64,
-    toe_out: f64,
-    /// Of the swinging foot, on top of what its pitch lifts.
-    lift: f64,
-    /// Pitch of the foot over the cycle, heel up positive.
-    pitch: &'static [(f64, [f64; 1])],
-    /// Mean height of the pelvis below standing, as a share of the leg.
-    crouch: f64,
-    bounce: f64,
-    /// Phase of the lowest point.
-    lowest: f64,
-    sway: f64,
-    pelvis_turn: f64,
-    pelvis_drop: f64,
-    pelvis_pitch: f64,
-    lean: f64,
-    arm_swing: f64,
-    arm_mean: f64,
-    elbow: f64,
-    elbow_swing: f64,
-    trunk_turn: f64,
-}
-
-pub(crate) const WALK: Style = Style {
-    cycles_hz: 0.93,
-    stride: 1.38,
-    radius: 2.6,
-    stance: 0.62,
-    lead: 0.31,
-    width: 0.065,
-    toe_out: degrees(7.0),
-    lift: 0.085,
-    pitch: &[
-        (0.0, [degrees(-20.0)]),
-        (0.10, [0.0]),
-        (0.34, [0.0]),
-        (0.50, [degrees(24.0)]),
-        (0.64, [degrees(68.0)]),
-        (0.75, [degrees(42.0)]),
-        (0.86, [degrees(-2.0)]),
-        (0.95, [degrees(-20.0)]),
-    ],
-    crouch: 0.030,
-    bounce: 0.018,
-    lowest: 0.05,
-    sway: 0.022,
-    pelvis_turn: degrees(5.0),
-    pelvis_drop: degrees(4.0),
-    pelvis_pitch: degrees(5.0),
-    lean: degrees(-2.0),
-    arm_swing: degrees(22.0),
-    arm_mean: degrees(2.0),
-    elbow: degrees(24.0),
-    elbow_swing: degrees(12.0),
-    trunk_turn: degrees(9.0),
-};
-
-pub(crate) const RUN: Style = Style {
-    cycles_hz: 1.36,
-    stride: 2.25,
-    radius: 7.0,
-    stance: 0.34,
-    lead: 0.30,
-    width: 0.03,
-    toe_out: degrees(6.0),
-    lift: 0.20,
-    pitch: &[
-        (0.0, [degrees(-8.0)]),
-        (0.06, [0.0]),
-        (0.15, [0.0]),
-        (0.34, [degrees(60.0)]),
-        (0.45, [degrees(88.0)]),
-        (0.70, [degrees(28.0)]),
-        (0.90, [degrees(-6.0)]),
-    ],
-    crouch: 0.055,
-    bounce: 0.036,
-    lowest: 0.15,
-    sway: 0.012,
-    pelvis_turn: degrees(8.0),
-    pelvis_drop: degrees(5.0),
-    pelvis_pitch: degrees(10.0),
-    lean: degrees(4.0),
-    arm_swing: degrees(32.0),
-    arm_mean: degrees(-10.0),
-    elbow: degrees(88.0),
-    elbow_swing: degrees(16.0),
-    trunk_turn: degrees(16.0),
-};
-
-impl Style {
-    /// The same gait as people of the CMU database go: brisker, with a longer swing in which the knee
-    /// bends more.
-    pub(crate) fn of_people(&self) -> Self {
-        Self {
-            cycles_hz: 1.02 * self.cycles_hz,
-            stride: 1.05 * self.stride,
-            stance: 0.955 * self.stance,
-            lift: 1.5 * self.lift,
-            crouch: 0.9 * self.crouch,
-            ..*self
-        }
-    }
-}
 
 /// One footprint: where the foot stands flat and how it got there.
 struct Footfall {
@@ -132,13 +20,37 @@ struct Footfall {
     vigour: f64,
 }
 
-/// Walking or running round a track.
+/// Where a gait leads.
+enum Way {
+    Oval(Track),
+    Corners(Corners),
+}
+
+impl Way {
+    fn at(&self, s: f64) -> Spot {
+        match self {
+            Self::Oval(track) => track.at(s),
+            Self::Corners(corners) => corners.at(s),
+        }
+    }
+
+    /// How far someone leans into a bend, over what balances the centripetal force: round a corner, which is over in a
+    /// step or two, feet placed aside do most of it.
+    fn banked(&self) -> f64 {
+        match self {
+            Self::Oval(_) => 1.0,
+            Self::Corners(_) => 0.35,
+        }
+    }
+}
+
+/// Walking or running round a track or along a path.
 pub(crate) struct Gait {
     style: Style,
     size: f64,
     cycles_hz: f64,
     stride: f64,
-    track: Track,
+    track: Way,
     first_cycle: f64,
     pitch: Timeline<1>,
     falls: [Vec<Footfall>; 2],
@@ -155,17 +67,29 @@ pub(crate) struct Gait {
 
 impl Gait {
     pub(crate) fn new(style: Style, body: &Body, seconds: f64, dice: &mut Dice) -> Self {
-        let size = body.leg() / 0.852;
-        let radius = style.radius * size;
         let heading = dice.uniform(0.0, TAU);
+        let mut gait = Self::unplaced(style, body, heading, dice);
+        let track = |origin| Track::new(style.radius * gait.size, heading, origin);
+        // The take begins anywhere on the track, and there the origin is.
+        let start = dice.uniform(0.0, track([0.0; 2]).lap());
+        gait.first_cycle += (start / gait.stride).floor();
+        let [x, y] = gait.track.at(gait.progress(gait.cycle(0.0))).place;
+        gait.track = Way::Oval(track([-x, -y]));
+        gait.place_feet(seconds, dice);
+        gait
+    }
+
+    /// Someone whose feet are nowhere yet.
+    fn unplaced(style: Style, body: &Body, heading: f64, dice: &mut Dice) -> Self {
+        let size = body.leg() / 0.852;
         let slow = |dice: &mut Dice, rms: f64| Wobble::new(dice, rms, 0.07, 0.6);
-        let mut gait = Self {
+        Self {
             style,
             size,
             // Long legs swing slowly, like pendulums.
             cycles_hz: dice.around(style.cycles_hz, 0.03) / size.sqrt(),
             stride: dice.around(style.stride, 0.03) * size,
-            track: Track::new(radius, heading, [0.0; 2]),
+            track: Way::Oval(Track::new(style.radius * size, heading, [0.0; 2])),
             first_cycle: dice.unit(),
             pitch: Timeline::periodic(style.pitch, 1.0),
             falls: [Vec::new(), Vec::new()],
@@ -178,12 +102,20 @@ impl Gait {
             head: [4.5, 2.5, 8.0].map(|rms| slow(dice, degrees(rms))),
             height: slow(dice, 0.003),
             drift: slow(dice, 0.012),
-        };
-        // The take begins anywhere on the track, and there the origin is.
-        let start = dice.uniform(0.0, gait.track.lap());
-        gait.first_cycle += (start / gait.stride).floor();
-        let [x, y] = gait.track.at(gait.progress(gait.cycle(0.0))).place;
-        gait.track = Track::new(radius, heading, [-x, -y]);
+        }
+    }
+
+    /// Round corners instead of round a track.
+    pub(crate) fn with_corners(style: Style, body: &Body, seconds: f64, dice: &mut Dice) -> Self {
+        let heading = dice.uniform(0.0, TAU);
+        let mut gait = Self::unplaced(style, body, heading, dice);
+        gait.first_cycle += dice.uniform(0.0, 3.0);
+        // A little farther than the take gets.
+        let length = gait.progress(gait.cycle(seconds + LEAD_S)) + 4.0 * gait.stride;
+        // Of its own, so that a longer walk begins like a shorter one.
+        let path = Corners::new(gait.size, heading, length, &mut dice.fork());
+        let [x, y] = path.at(gait.progress(gait.cycle(0.0))).place;
+        gait.track = Way::Corners(path.moved([-x, -y]));
         gait.place_feet(seconds, dice);
         gait
     }
@@ -282,7 +214,7 @@ impl Choreography for Gait {
         let spot = self.track.at(self.progress(cycle));
         let speed = self.stride * self.cycles_hz;
         // A runner leans into the bend until weight and centripetal force balance.
-        let bank = -atan2(speed * speed * spot.curvature, 9.81);
+        let bank = -self.track.banked() * atan2(speed * speed * spot.curvature, 9.81);
         let surge = 0.010 * self.size * sin(step);
         let sway = style.sway * sin(turn + 0.1) + self.drift.at(time);
         let [x, y] = spot.beside(surge, sway * self.size);

@@ -1,11 +1,15 @@
 //! Motion generators: pure functions from time to posture, drawn once per take.
 
+mod corners;
+mod footwork;
 mod gait;
 mod jump;
 mod kick;
+mod manner;
 mod reach;
 mod script;
 mod steps;
+mod style;
 mod throw;
 mod track;
 mod turn;
@@ -31,11 +35,21 @@ pub(crate) fn choreography(
     dice: &mut Dice,
 ) -> Box<dyn Choreography> {
     // A body with a skin is a person.
-    let style = |style: &gait::Style| if body.surface { style.of_people() } else { *style };
+    let people = |style: &style::Style| if body.surface { style.of_people() } else { *style };
     match activity {
-        Activity::Walk => Box::new(gait::Gait::new(style(&gait::WALK), body, seconds, dice)),
-        Activity::Run => Box::new(gait::Gait::new(style(&gait::RUN), body, seconds, dice)),
-        Activity::Jump => Box::new(jump::Jump::new(body, seconds, dice)),
+        Activity::Walk => Box::new(gait::Gait::new(people(&style::WALK), body, seconds, dice)),
+        Activity::Run => Box::new(gait::Gait::new(people(&style::RUN), body, seconds, dice)),
+        Activity::Jump => {
+            let way = if body.surface { jump::Way::of_person(dice) } else { jump::TEMPLATE };
+            Box::new(jump::Jump::new(&way, body, seconds, dice))
+        }
+        Activity::Corner => {
+            Box::new(gait::Gait::with_corners(people(&style::WALK), body, seconds, dice))
+        }
+        Activity::Leap => {
+            let way = jump::Way::far(dice);
+            Box::new(jump::Jump::new(&way, body, seconds, dice))
+        }
         Activity::Throw => Box::new(throw::Throw::new(body, seconds, dice)),
         Activity::Turn => Box::new(turn::Turn::new(body, seconds, dice)),
         Activity::Reach => Box::new(reach::Reach::new(body, seconds, dice)),

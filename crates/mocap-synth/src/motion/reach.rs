@@ -5,6 +5,7 @@ use mocap_core::{
 
 use super::{
     Choreography, LEAD_S,
+    manner::{self, Manner},
     steps::{Footprint, Steps},
 };
 use crate::{
@@ -39,6 +40,10 @@ const HANG: [f64; ARM] =
 const CHEST: [f64; ARM] =
     [degrees(24.0), degrees(14.0), degrees(8.0), degrees(-42.0), degrees(104.0), degrees(4.0)];
 
+/// Or brought to the mouth.
+const MOUTH: [f64; ARM] =
+    [degrees(44.0), degrees(20.0), degrees(4.0), degrees(-38.0), degrees(122.0), degrees(2.0)];
+
 /// Where something is, seen from the middle of the feet, in metres: ahead, left, up.
 struct Goal {
     place: [f64; 3],
@@ -48,17 +53,21 @@ struct Goal {
 }
 
 impl Goal {
-    fn sample(size: f64, dice: &mut Dice) -> Self {
+    fn sample(size: f64, manner: &Manner, dice: &mut Dice) -> Self {
         let both = dice.unit() < 0.3;
         let side = usize::from(dice.unit() < 0.6);
         let arms = if both { [true; 2] } else { [side == 0, side == 1] };
         // Tables and shelves more often than floors and ceilings.
         let up = match dice.unit() {
-            u if u < 0.35 => dice.uniform(0.12, 0.75),
-            u if u < 0.78 => dice.uniform(0.85, 1.35),
+            u if u < manner.low => dice.uniform(0.12, 0.75),
+            u if u < manner.low + manner.middle => dice.uniform(0.85, 1.35),
             _ => dice.uniform(1.45, 1.95),
         };
-        let step = if dice.unit() < 0.35 { dice.uniform(0.2, 0.45) } else { 0.0 };
+        let step = if dice.unit() < manner.steps {
+            dice.uniform(manner.step[0], manner.step[1])
+        } else {
+            0.0
+        };
         let ahead = dice.uniform(0.42, 0.72) + 0.9 * step;
         let azimuth = if both { dice.jitter(0.15) } else { SIDE[side] * dice.uniform(-0.35, 0.75) };
         let (s, c) = sin_cos(azimuth);
@@ -74,7 +83,7 @@ struct Plan {
 }
 
 impl Plan {
-    fn new(body: &Body, goal: &Goal) -> Self {
+    fn new(body: &Body, goal: &Goal, manner: &Manner) -> Self {
         let size = body.leg() / 0.852;
         let shoulder = 1.43 * size;
         let [ahead, left, up] = goal.place;
@@ -86,16 +95,16 @@ impl Plan {
         // With one hand the shoulder comes forward; with two the trunk stays square.
         let side = if goal.arms[0] { 1.0 } else { -1.0 };
         let turn = if one { 0.55 * azimuth - side * (0.12 + 0.5 * far) } else { 0.7 * azimuth };
-        let squat = 0.30 * low * size;
-        let bend = degrees(70.0) * low + degrees(38.0) * far - degrees(12.0) * high;
+        let squat = manner.squat * 0.30 * low * size;
+        let bend = manner.bend * low + degrees(38.0) * far - degrees(12.0) * high;
         let hips_back = -0.11 * low * size;
         let trunk = [
-            0.55 * goal.step + 0.04 * far * size + hips_back,
+            manner.along * goal.step + 0.04 * far * size + hips_back,
             0.25 * left,
             -squat - 0.015 * size,
-            degrees(4.0) + 0.55 * bend,
+            degrees(4.0) + (1.0 - manner.trunk) * bend,
             0.4 * turn,
-            degrees(-2.0) + 0.45 * bend,
+            degrees(-2.0) + manner.trunk * bend,
             if one { -side * 0.18 * high } else { 0.0 },
             0.6 * turn,
             // The eyes are on it.
@@ -197,27 +206,35 @@ impl Reach {
         let sway = [0, 1].map(|_| slow(dice, 0.006 * size));
         let idle = [0, 1, 2, 3].map(|_| slow(dice, degrees(2.5)));
         let head = [0, 1].map(|_| slow(dice, degrees(4.0)));
+        let manner = if body.surface { Manner::of_person(dice) } else { manner::TEMPLATE };
         let print = |ahead: f64, foot: usize| footprint(heading, ahead, half, foot);
         let mut feet = [0, 1].map(|foot| Steps::new(print(0.0, foot)));
         let mut time = -LEAD_S - dice.uniform(0.2, 2.0);
         let mut trunk = vec![(time, STAND)];
         let mut arms = [vec![(time, HANG)], vec![(time, HANG)]];
         while time < seconds + LEAD_S {
-            let goal = Goal::sample(size, dice);
-            let plan = Plan::new(body, &goal);
-            let go = dice.around(0.78, 0.15) + 0.25 * goal.step / size;
+            let goal = Goal::sample(size, &manner, dice);
+            let plan = Plan::new(body, &goal, &manner);
+            let go = manner.slow * dice.around(0.78, 0.15) + 0.25 * goal.step / size;
             let hold = dice.uniform(0.08, 0.35);
             let rest = dice.uniform(0.03, 0.3);
             let start = time + rest;
             let (there, leave) = (start + go, start + go + hold);
-            let fetched = leave + dice.around(0.6, 0.15);
-            let back = fetched + dice.around(0.75, 0.12);
+            let fetched = leave + manner.slow * dice.around(0.6, 0.15);
+            let home = manner.slow * dice.around(0.75, 0.12);
             let fetch = dice.unit() < 0.6;
+            let hold_s =
+                if fetch && manner.holds > 0.0 { dice.uniform(0.1, manner.holds) } else { 0.0 };
+            let back = fetched + hold_s + home;
             trunk.extend([(start, STAND), (there, plan.trunk), (leave, plan.trunk)]);
             let mut upright = STAND;
             upright[0] = 0.4 * plan.trunk[0];
             upright[8] = degrees(if fetch { 14.0 } else { 0.0 });
-            trunk.extend([(fetched, upright), (back, STAND)]);
+            trunk.push((fetched, upright));
+            if hold_s > 0.0 {
+                trunk.push((fetched + hold_s, upright));
+            }
+            trunk.push((back, STAND));
             for (i, keys) in arms.iter_mut().enumerate() {
                 let lag = dice.uniform(0.0, 0.05);
                 let late = |t: f64| t + lag;
@@ -230,14 +247,31 @@ impl Reach {
                 keys.extend([(late(start), HANG), (late(there), nudge(plan.arms[i]))]);
                 keys.push((late(leave), nudge(plan.arms[i])));
                 let after = if fetch && goal.arms[i] { CHEST } else { HANG };
-                keys.extend([(late(fetched), nudge(after)), (late(back), HANG)]);
+                keys.push((late(fetched), nudge(after)));
+                if hold_s > 0.0 && goal.arms[i] {
+                    if hold_s > 0.6 {
+                        // Looked at closely, or drunk from.
+                        keys.push((late(fetched + 0.5 * hold_s), nudge(MOUTH)));
+                    }
+                    keys.push((late(fetched + hold_s), nudge(CHEST)));
+                }
+                keys.push((late(back), HANG));
             }
             if goal.step > 0.0 {
                 // The foot on the side of the hand, or the left one.
                 let foot = usize::from(!goal.arms[0]);
                 feet[foot].step(start, start + 0.62 * go, print(goal.step, foot), 0.05 * size);
-                let home = fetched - 0.1;
-                feet[foot].step(home, home + 0.55, print(0.0, foot), 0.04 * size);
+                // Behind a long step the other foot follows.
+                let other = goal.step - 0.3 * size;
+                let follows = manner.along > 0.7 && other > 0.1 * size;
+                if follows {
+                    let time = start + 0.5 * go;
+                    feet[1 - foot].step(time, start + go, print(other, 1 - foot), 0.04 * size);
+                    let time = fetched + hold_s;
+                    feet[1 - foot].step(time, time + 0.5, print(0.0, 1 - foot), 0.04 * size);
+                }
+                let leave = fetched - 0.1;
+                feet[foot].step(leave, leave + 0.55, print(0.0, foot), 0.04 * size);
             }
             time = back + 0.06;
         }

@@ -113,9 +113,14 @@ pub(super) struct Script<'a, const N: usize> {
 
 impl<const N: usize> Script<'_, N> {
     pub(super) fn row(&self, key: usize) -> [f64; N] {
+        self.of(&self.rows[key])
+    }
+
+    /// The same for a row that is not in the script.
+    pub(super) fn of(&self, row: &[f64; N]) -> [f64; N] {
         let rest = &self.rows[0];
         std::array::from_fn(|n| {
-            let value = rest[n] + self.vigour[n] * (self.rows[key][n] - rest[n]);
+            let value = rest[n] + self.vigour[n] * (row[n] - rest[n]);
             if n < self.lengths { value * self.size } else { degrees(value) }
         })
     }

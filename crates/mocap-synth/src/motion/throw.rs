@@ -1,5 +1,6 @@
 use super::{
-    Choreography,
+    Choreography, LEAD_S,
+    footwork::{Footwork, Planner, Walk},
     script::{Bout, Script, Stance},
 };
 use crate::{
@@ -39,24 +40,50 @@ const SCRIPT: [[f64; CHANNELS]; KEYS] = [
     [0.0, 0.0, 0.0,   4.0, 0.0,   -2.0, 0.0, 0.0,   0.0,   2.0, 9.0, 0.0, -20.0, 18.0,   2.0, 9.0, 18.0,   0.0,   0.0],
 ];
 
-/// Seconds from each key to the next.
+/// Seconds from each key to the next: the template's, and those of people, who hurry but for the throw itself.
 const PACE_S: [f64; KEYS - 1] = [0.55, 0.50, 0.45, 0.20, 0.125, 0.28, 0.55, 0.70];
+const PEOPLE_PACE_S: [f64; KEYS - 1] = [0.36, 0.34, 0.32, 0.19, 0.12, 0.26, 0.36, 0.42];
 
 /// The first channels hold lengths; all others hold angles.
 const LENGTHS: usize = 3;
 
-/// Overarm throws with the right hand from one spot, one after the other.
+/// Both hands up before the body: a ball is about to come.
+const READY: [f64; CHANNELS] = [
+    0.01, 0.0, -0.03, 8.0, 0.0, 0.0, 0.0, 0.0, 0.0, 24.0, 14.0, 0.0, -40.0, 68.0, 24.0, 14.0, 68.0,
+    0.0, 0.0,
+];
+/// Meets it.
+const CATCH: [f64; CHANNELS] = [
+    0.04, 0.0, -0.04, 8.0, 0.0, 4.0, 0.0, 0.0, 0.0, 62.0, 16.0, 6.0, -46.0, 56.0, 62.0, 14.0, 56.0,
+    0.0, 0.0,
+];
+
+/// Picks it up from the floor.
+const PICK: [f64; CHANNELS] = [
+    -0.02, 0.0, -0.24, 34.0, 0.0, 30.0, 0.0, 0.0, 0.0, 72.0, 6.0, 0.0, -20.0, 18.0, 72.0, 6.0,
+    18.0, 0.0, 0.0,
+];
+
+/// Overarm throws with the right hand, one after the other: the template's from one spot; people move to where the ball
+/// comes, and catch it first.
 pub(crate) struct Throw {
     stance: Stance,
+    footwork: Footwork,
     throws: Vec<Bout<CHANNELS>>,
 }
 
 impl Throw {
     pub(crate) fn new(body: &Body, seconds: f64, dice: &mut Dice) -> Self {
         let stance = Stance::new(body, degrees(5.0), dice);
-        let sample = |start, dice: &mut Dice| throw(start, stance.size, body.surface, dice);
-        let throws = Bout::all(seconds, dice, sample);
-        Self { stance, throws }
+        if body.surface {
+            let mut planner = Planner::new(stance.size, -2.0 * LEAD_S, [0.0; 2]);
+            let sample =
+                |start, dice: &mut Dice| catch_and_throw(start, stance.size, &mut planner, dice);
+            let throws = Bout::all(seconds, dice, sample);
+            return Self { stance, footwork: planner.finish(), throws };
+        }
+        let throws = Bout::all(seconds, dice, |start, dice| throw(start, stance.size, dice));
+        Self { stance, footwork: Footwork::none(), throws }
     }
 
     fn feet(
@@ -69,43 +96,92 @@ impl Throw {
         let Stance { size, heading, .. } = self.stance;
         let half = 0.12 * size;
         let [out, home] = throw.arcs(time);
-        let front_heading = heading + degrees(4.0);
+        let [front_shift, rear_shift] = [0, 1].map(|foot| self.footwork.foot(foot, time));
+        let (front_pitch, rear_pitch) = (c[17] + front_shift.pitch, c[18] + rear_shift.pitch);
+        let front_heading = heading + degrees(4.0) + front_shift.turn;
         let mut front = pitched_ankle(
             body,
-            self.stance.at(0.60 * size * throw.stride(time), half),
+            self.stance
+                .at(0.60 * size * throw.stride(time) + front_shift.ahead, half + front_shift.left),
             front_heading,
-            c[17],
-            if c[17] > 0.0 { Pivot::Ball } else { Pivot::Heel },
+            front_pitch,
+            if front_pitch > 0.0 { Pivot::Ball } else { Pivot::Heel },
         );
-        front[2] += size * (0.12 * out + 0.07 * home);
-        let rear_heading = heading - degrees(35.0);
-        let rear_flat = self.stance.at(0.0, -half);
-        let rear = pitched_ankle(body, rear_flat, rear_heading, c[18], Pivot::Ball);
+        front[2] += size * (0.12 * out + 0.07 * home) + front_shift.up;
+        let rear_heading = heading - degrees(35.0) + rear_shift.turn;
+        let rear_flat = self.stance.at(rear_shift.ahead, rear_shift.left - half);
+        let mut rear = pitched_ankle(body, rear_flat, rear_heading, rear_pitch, Pivot::Ball);
+        rear[2] += rear_shift.up;
         [
-            FootTarget { ankle: front, heading: front_heading, pitch: c[17], toe: 0.0 },
-            FootTarget { ankle: rear, heading: rear_heading, pitch: c[18], toe: c[18].max(0.0) },
+            FootTarget { ankle: front, heading: front_heading, pitch: front_pitch, toe: 0.0 },
+            FootTarget {
+                ankle: rear,
+                heading: rear_heading,
+                pitch: rear_pitch,
+                toe: c[18].max(0.0),
+            },
         ]
     }
 }
 
-/// People wait less between throws than the template does, and throw faster.
-fn throw(start: f64, size: f64, of_person: bool, dice: &mut Dice) -> Bout<CHANNELS> {
-    let [wait, hurry] = if of_person { [0.3, 0.86] } else { [1.0, 1.0] };
-    let rest = wait * dice.uniform(0.1, 0.7);
-    let pace = hurry * dice.around(1.0, 0.07);
-    let mut time = start + rest;
+fn throw(start: f64, size: f64, dice: &mut Dice) -> Bout<CHANNELS> {
+    let rest = dice.uniform(0.1, 0.7);
+    let pace = dice.around(1.0, 0.07);
+    let vigour = std::array::from_fn(|_| dice.around(1.0, 0.06));
+    let script = Script { rows: &SCRIPT, lengths: LENGTHS, size, vigour };
+    let keys = vec![(start, script.row(0)), (start + rest, script.row(0))];
+    throw_from(keys, PACE_S.map(|length| pace * length), &script, dice)
+}
+
+/// Goes on from where the keys end, through the script's rows behind the first.
+fn throw_from(
+    mut keys: Vec<(f64, [f64; CHANNELS])>,
+    pace_s: [f64; KEYS - 1],
+    script: &Script<'_, CHANNELS>,
+    dice: &mut Dice,
+) -> Bout<CHANNELS> {
+    let start = keys[0].0;
+    let first = keys.len();
+    let mut time = keys[first - 1].0;
+    for (key, length) in pace_s.into_iter().enumerate() {
+        time += dice.around(length, 0.04);
+        keys.push((time, script.row(key + 1)));
+    }
+    let at = |key: usize| keys[first + key - 1].0;
+    let (step, back) = ([at(1), at(3)], [at(7), at(8)]);
+    let aim = degrees(dice.jitter(5.0));
+    Bout { start, end: time, aim, channels: Timeline::new(&keys), step, back }
+}
+
+/// A few quick steps to where the ball comes, the catch, and the throw.
+fn catch_and_throw(
+    start: f64,
+    size: f64,
+    planner: &mut Planner,
+    dice: &mut Dice,
+) -> Bout<CHANNELS> {
     let vigour = std::array::from_fn(|_| dice.around(1.0, 0.06));
     let script = Script { rows: &SCRIPT, lengths: LENGTHS, size, vigour };
     let mut keys = vec![(start, script.row(0))];
-    for key in 0..KEYS {
-        keys.push((time, script.row(key)));
-        if let Some(length) = PACE_S.get(key) {
-            time += pace * dice.around(*length, 0.04);
-        }
-    }
-    let (step, back) = ([keys[2].0, keys[4].0], [keys[8].0, keys[9].0]);
-    let aim = degrees(dice.jitter(5.0));
-    Bout { start, end: time, aim, channels: Timeline::new(&keys), step, back }
+    let setting_off = start + dice.uniform(0.1, 0.35);
+    let to = [size * dice.uniform(-1.5, 1.5), size * dice.uniform(-2.0, 2.0)];
+    let from = planner.at();
+    let way = (to[0] - from[0]).hypot(to[1] - from[1]) / size;
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let steps = 2 + (way / 0.6) as usize;
+    // Sideways the near foot goes first.
+    let first = usize::from(to[1] < from[1]);
+    let pace = dice.around(0.25, 0.12);
+    let lift = 0.07 * size;
+    let there = planner.walk(&Walk { start: setting_off, to, steps, first, pace, lift });
+    // Caught, or picked up where it fell.
+    let (ball, hurry) = if dice.unit() < 0.7 { (&CATCH, 0.3) } else { (&PICK, 0.6) };
+    let met = there + dice.uniform(0.1, 0.3) + 0.5 * hurry;
+    keys.push((setting_off + 0.1, script.of(&READY)));
+    keys.push((met - hurry, script.of(&READY)));
+    keys.push((met, script.of(ball)));
+    let pace = dice.around(1.0, 0.08);
+    throw_from(keys, PEOPLE_PACE_S.map(|length| pace * length), &script, dice)
 }
 
 impl Choreography for Throw {
@@ -113,7 +189,8 @@ impl Choreography for Throw {
         let throw = Bout::of(&self.throws, time);
         let Stance { heading, arms, head, .. } = &self.stance;
         let c = throw.channels.at(time);
-        let [x, y] = self.stance.swayed(c[0], c[1], time);
+        let [ahead, to_left, up, turn] = self.footwork.pelvis(time);
+        let [x, y] = self.stance.swayed(c[0] + ahead, c[1] + to_left, time);
         let right = Arm {
             flexion: c[9] + arms[1].at(time),
             abduction: c[10],
@@ -135,8 +212,8 @@ impl Choreography for Throw {
             shrug: 0.10 * c[14].max(0.0),
         };
         Posture {
-            pelvis_m: [x, y, body.standing() - 0.012 * body.leg() + c[2]],
-            pelvis: Tilt { pitch: c[3], roll: 0.0, yaw: heading + c[4] + throw.aimed(time) },
+            pelvis_m: [x, y, body.standing() - 0.012 * body.leg() + c[2] + up],
+            pelvis: Tilt { pitch: c[3], roll: 0.0, yaw: heading + turn + c[4] + throw.aimed(time) },
             trunk: Tilt { pitch: c[5], roll: c[6], yaw: c[7] },
             head: Tilt {
                 pitch: -0.5 * c[5] + head[0].at(time),

@@ -64,7 +64,7 @@ proptest! {
 
     #[test]
     fn every_allowed_parameter_gives_a_complete_finite_take(
-        activity in 0_usize..7,
+        activity in 0_usize..9,
         layout in 0_usize..3,
         hands in 0_usize..3,
         person in proptest::option::of(any::<u64>()),

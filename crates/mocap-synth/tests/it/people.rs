@@ -95,7 +95,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn joints_of_people_turn_no_further_than_joints_do(seed in any::<u64>(), activity in 0_usize..7) {
+    fn joints_of_people_turn_no_further_than_joints_do(seed in any::<u64>(), activity in 0_usize..9) {
         let person = Some(Person::draw(seed));
         let motion = Activity::ALL[activity];
         let recorded = record(SynthParams { person, frames: 600, ..params(motion, seed) });

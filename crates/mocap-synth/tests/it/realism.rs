@@ -16,7 +16,7 @@
 //! | lowest toe, heel and fifth metatarsal | −4 mm | 50 mm |
 
 use mocap_core::{MarkerKnowledge, Take, geometry::norm};
-use mocap_synth::{Activity, SynthParams};
+use mocap_synth::{Activity, Person, SynthParams};
 
 use crate::{params, record};
 
@@ -91,8 +91,10 @@ fn markers_move_as_fast_as_captured_ones() {
         let mean = speeds.iter().sum::<f64>() / speeds.len() as f64;
         // Walking people cover 1.1 to 1.6 m/s, joggers 2.5 to 4; jumps and throws pause between.
         let usual = match activity {
-            Activity::Walk => 1.1..1.8,
+            Activity::Walk | Activity::Corner => 1.1..1.8,
             Activity::Run => 2.5..4.4,
+            // 141_04, jumps over distances: 1.6 m/s.
+            Activity::Leap => 0.8..2.2,
             Activity::Turn | Activity::Reach => 0.15..0.6,
             _ => 0.3..1.6,
         };
@@ -169,6 +171,49 @@ fn knees_and_elbows_bend_one_way() {
                     assert!((0.0..150.0).contains(&degrees), "{activity} {seed} {name}: {degrees}");
                 }
             }
+        }
+    }
+}
+
+/// Highest speed over the floor of the foot that is slower at each moment, and how long it lasts, for people.
+#[test]
+fn people_who_step_about_always_stand_on_a_foot() {
+    for activity in
+        [Activity::Walk, Activity::Corner, Activity::Throw, Activity::Kick, Activity::Reach]
+    {
+        for seed in SEEDS {
+            let person = Some(Person::draw(seed));
+            let params = SynthParams { noise_m: 0.0, person, ..params(activity, seed) };
+            let take = record(params).into_take();
+            let feet = ["LMT5", "RMT5"].map(|name| take.markers().find(name).unwrap());
+            let speed = |t: usize, m: usize| {
+                let (p, q) = (take.position(t - 1, m).unwrap(), take.position(t, m).unwrap());
+                (q[0] - p[0]).hypot(q[1] - p[1]) * take.rate_hz()
+            };
+            let slower = |t: usize| feet.map(|m| speed(t, m)).into_iter().fold(f64::MAX, f64::min);
+            let slipping = (1..take.frames()).filter(|&t| slower(t) > 0.35).count();
+            let share = slipping as f64 / take.frames() as f64;
+            // The change from foot to foot is a matter of frames.
+            assert!(share < 0.05, "{activity} {seed}: no foot at rest for {share} of the time");
+        }
+    }
+}
+
+#[test]
+fn people_never_stand_quite_still() {
+    for activity in [Activity::Jump, Activity::Turn, Activity::Reach, Activity::Kick] {
+        for seed in SEEDS {
+            let person = Some(Person::draw(seed));
+            let recorded = record(SynthParams { person, ..params(activity, seed) });
+            let joints = recorded.joints();
+            let head = recorded.motion().skeleton().find("head").unwrap();
+            let mut speeds: Vec<f64> = (1..joints.dim().0)
+                .map(|t| norm([0, 1, 2].map(|a| joints[(t, head, a)] - joints[(t - 1, head, a)])))
+                .map(|step_m| step_m * recorded.take().rate_hz())
+                .collect();
+            // Heads of captured people who stand move at 1 cm/s and more nearly all the time.
+            let slow = quantile(&mut speeds, 0.05);
+            assert!((0.005..0.2).contains(&slow), "{activity} {seed}: {slow} m/s");
         }
     }
 }
