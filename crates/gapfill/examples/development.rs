@@ -5,18 +5,18 @@
 //! ```
 //!
 //! The first word names the takes: `tuning` for choosing, `checking` for what was chosen, `ninety` for the list of
-//! [Li10]. The second names methods; the third, if given, keeps the classes that contain it, and the fourth the takes
-//! whose path does.
+//! [Li10]. The second names methods, `+session` behind one gives it the other takes of the trial's session; the third,
+//! if given, keeps the classes that contain it, and the fourth the takes whose path does.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a tool for developers")]
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "frame numbers")]
 
-use std::{collections::BTreeMap, path::Path, time::Instant};
+use std::{collections::BTreeMap, rc::Rc, sync::Arc, time::Instant};
 
 use augment::Limb;
 use gapfill::{Options, build};
 use mocap_core::{GapFiller, Holdout, Mask, Take, geometry::distance};
 use mocap_io::{MarkerFile, ReadOptions};
-use mocap_testkit::ninety_trials;
+use mocap_testkit::{motion, ninety_trials, recording};
 use ndarray::s;
 
 /// File, frames, and whether it is for choosing.
@@ -53,21 +53,21 @@ fn main() {
     let methods = arguments.get(1).map_or("auto", String::as_str);
     let only = arguments.get(2).map_or("", String::as_str);
     let trials = if which == "ninety" {
-        let ninety = ninety_trials().unwrap();
-        ninety.into_iter().map(|holdout| ("ninety".to_owned(), holdout)).collect()
+        ninety()
     } else {
         development(which == "tuning", arguments.get(3).map_or("", String::as_str))
     };
     for method in methods.split(',') {
-        let filler = build(method, &Options::default()).unwrap();
+        let id = method.trim_end_matches("+session");
         let mut scores: BTreeMap<&str, Vec<Score>> = BTreeMap::new();
-        for (class, holdout) in trials.iter().filter(|(class, _)| class.contains(only)) {
+        for Trial { class, holdout, session } in trials.iter().filter(|t| t.class.contains(only)) {
+            let session = if id == method { Vec::new() } else { session.to_vec() };
+            let filler = build(id, &Options { session, ..Options::default() }).unwrap();
             let score = Score::of(filler.as_ref(), holdout);
-            scores.entry(class).or_default().push(score);
             if std::env::var_os("EACH").is_some() {
-                let score = &scores[class.as_str()][scores[class.as_str()].len() - 1];
                 println!("{class} {:?} {:.2}", holdout.visible().gaps()[0], mean(&score.errors_mm));
             }
+            scores.entry(class).or_default().push(score);
         }
         let mut all = Vec::new();
         for (class, scores) in scores {
@@ -76,6 +76,30 @@ fn main() {
         }
         print(method, "all", &all);
     }
+}
+
+/// One or more gaps in one take.
+struct Trial {
+    class: String,
+    holdout: Holdout,
+    /// Other takes of the same person with the same markers.
+    session: Rc<[Arc<Take>]>,
+}
+
+/// The trials of [Li10]; sessions are the other motions of the subject.
+fn ninety() -> Vec<Trial> {
+    let list = recording("cmu/bolero-nine/trials90.csv").unwrap();
+    let list = std::fs::read_to_string(list).unwrap();
+    let names: Vec<&str> = list.lines().skip(1).filter_map(|line| line.split(',').nth(1)).collect();
+    let subject = |name: &str| name.split('_').next().unwrap_or_default().to_owned();
+    let takes: BTreeMap<&str, Arc<Take>> =
+        names.iter().map(|&name| (name, Arc::new(motion(name).unwrap()))).collect();
+    let trial = |(&name, holdout): (&&str, Holdout)| {
+        let others = takes.iter().filter(|(of, _)| **of != name && subject(of) == subject(name));
+        let session = others.map(|(_, take)| Arc::clone(take)).collect();
+        Trial { class: "ninety".to_owned(), holdout, session }
+    };
+    names.iter().zip(ninety_trials().unwrap()).map(trial).collect()
 }
 
 /// The errors of one trial.
@@ -156,21 +180,28 @@ fn print(method: &str, class: &str, scores: &[Score]) {
 }
 
 /// Trials on the takes for choosing or for checking.
-fn development(choosing: bool, only: &str) -> Vec<(String, Holdout)> {
-    let folder = std::env::var("MOCAP_DATA").unwrap();
-    let mut trials = Vec::new();
-    for (k, (path, frames, tuning)) in TAKES.iter().enumerate() {
-        if *tuning != choosing || !path.contains(only) {
-            continue;
-        }
-        let file =
-            MarkerFile::read(&Path::new(&folder).join(path), &ReadOptions::default()).unwrap();
-        let take = markers_of_a_body(&cut(file.take(), frames.clone()));
-        let mut dice = Dice(1000 + k as u64);
+///
+/// The session of a cut is made of the other cuts of the same recording.
+fn development(choosing: bool, only: &str) -> Vec<Trial> {
+    let chosen = TAKES.iter().enumerate();
+    let chosen = chosen.filter(|(_, (path, _, tuning))| *tuning == choosing && path.contains(only));
+    let cuts: Vec<(usize, &str, Arc<Take>)> = chosen
+        .map(|(k, (path, frames, _))| {
+            let file =
+                MarkerFile::read(&recording(path).unwrap(), &ReadOptions::default()).unwrap();
+            (k, *path, Arc::new(markers_of_a_body(&cut(file.take(), frames.clone()))))
+        })
+        .collect();
+    let mut all = Vec::new();
+    for (k, path, take) in &cuts {
+        let others = cuts.iter().filter(|(other, of, _)| other != k && of == path);
+        let session: Rc<[Arc<Take>]> = others.map(|(_, _, take)| Arc::clone(take)).collect();
+        let mut trials: Vec<(String, Holdout)> = Vec::new();
+        let mut dice = Dice(1000 + *k as u64);
         for _ in 0..6 {
             let share = 0.1 + 0.4 * dice.unit();
             trials.extend(dice.hide(
-                &take,
+                take,
                 "1 × 10–50 %",
                 1,
                 (share * take.frames() as f64) as usize,
@@ -182,7 +213,7 @@ fn development(choosing: bool, only: &str) -> Vec<(String, Holdout)> {
             for _ in 0..repeats {
                 let length = (seconds * take.rate_hz()) as usize;
                 trials.extend(dice.hide(
-                    &take,
+                    take,
                     &format!("{markers} × {seconds} s"),
                     markers,
                     length,
@@ -194,7 +225,7 @@ fn development(choosing: bool, only: &str) -> Vec<(String, Holdout)> {
             for seconds in [0.5, 2.0] {
                 let length = (seconds * take.rate_hz()) as usize;
                 trials.extend(dice.hide_these(
-                    &take,
+                    take,
                     &format!("limb {seconds} s"),
                     &markers,
                     length,
@@ -205,15 +236,17 @@ fn development(choosing: bool, only: &str) -> Vec<(String, Holdout)> {
         for frames in [10, 30, 60] {
             for _ in 0..2 {
                 trials.extend(dice.hide_these(
-                    &take,
+                    take,
                     &format!("black-out {frames}"),
                     &everything,
                     frames,
                 ));
             }
         }
+        let trial = |(class, holdout)| Trial { class, holdout, session: Rc::clone(&session) };
+        all.extend(trials.into_iter().map(trial));
     }
-    trials
+    all
 }
 
 fn cut(take: &Take, frames: std::ops::Range<usize>) -> Take {

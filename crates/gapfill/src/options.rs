@@ -1,10 +1,12 @@
+use std::sync::Arc;
+
 use mocap_core::{BoneRule, BoneSet, BoneSource, CoreError, MarkerKnowledge, Take};
 use solve_ik::Body;
 
 use crate::{Borders, Edges, Start};
 
 /// What a user may say about any method; a method reads what concerns it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Options {
     /// Where bone lengths come from.
     pub bones: Bones,
@@ -31,6 +33,8 @@ pub struct Options {
     /// Gaps that are expected to be filled with a larger error stay open, for `auto`; positive, the root mean
     /// square over a gap in metres. `None`: all are filled.
     pub max_error_m: Option<f64>,
+    /// Other takes of the same person with the same markers to learn from, for `auto`.
+    pub session: Vec<Arc<Take>>,
     /// What becomes of the step at the borders of a gap; `None`: the method's own choice, which is to
     /// join for `lds` and `bolero-sc`.
     pub borders: Option<Borders>,
@@ -54,6 +58,7 @@ impl Default for Options {
             seed: 0,
             edges: Edges::default(),
             max_error_m: None,
+            session: Vec::new(),
             borders: None,
             bodies: Body::built_in(),
         }

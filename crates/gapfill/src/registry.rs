@@ -95,7 +95,7 @@ pub const METHODS: &[Method] = &[
     Method {
         id: "auto",
         summary: "the best mixture for each gap, found by trying every method on gaps with known truth; says how sure it is",
-        options: &["edges", "max-error", "bodies"],
+        options: &["edges", "max-error", "session", "bodies"],
         build: auto,
     },
     Method {
@@ -202,7 +202,11 @@ fn components(options: &Options) -> Result<Box<dyn GapFiller>, FillError> {
 fn auto(options: &Options) -> Result<Box<dyn GapFiller>, FillError> {
     let joined = Options { borders: None, ..options.clone() };
     let lds = dynamical_system(LdsFillerParams::default(), Borders::Join, &joined)?;
-    let params = AutoParams { max_error_m: options.max_error_m, edges: options.edges };
+    let params = AutoParams {
+        max_error_m: options.max_error_m,
+        edges: options.edges,
+        session: options.session.clone(),
+    };
     let models = Models { lds, bolero: soft_bones(&joined)?, ik: kinematic(options)? };
     Ok(Box::new(Auto::with_models(params, models)?))
 }

@@ -111,7 +111,7 @@ impl OutputArgs {
 }
 
 /// Whether two paths lead to one file, through links or not.
-fn same_file(a: &Path, b: &Path) -> bool {
+pub(crate) fn same_file(a: &Path, b: &Path) -> bool {
     match (a.canonicalize(), b.canonicalize()) {
         (Ok(a), Ok(b)) => a == b,
         _ => false,

@@ -1,3 +1,5 @@
+mod session;
+
 use std::{
     fmt::Write,
     path::{Path, PathBuf},
@@ -14,6 +16,7 @@ use mocap_report::{FillSummary, PlotInput, TakeSummary, html_page, render_png, r
 use serde_json::json;
 use sha2::{Digest, Sha256};
 
+use self::session::Session;
 use crate::{
     detect,
     files::{OutputArgs, ReadArgs, create_folder},
@@ -32,6 +35,7 @@ const SIDECAR: &str = ".fill.json";
 #[command(after_help = "Examples:
   mocap fill walk.c3d -o filled.c3d
   mocap fill walk.c3d -o filled.c3d --max-error 10
+  mocap fill walk.c3d -o filled.c3d --session walk2.c3d run.c3d
   mocap fill walk.c3d -o filled.c3d --method spline --max-gap 0.2
   mocap fill walk.csv -o filled.c3d --rate 120 --report report
 
@@ -99,6 +103,9 @@ struct MethodArgs {
     /// Leave gaps open that are expected to be filled with a larger error, for `auto`
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     max_error: Option<f64>,
+    /// Other recordings of the same person with the same markers to learn from, for `auto`
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    session: Vec<PathBuf>,
     /// What becomes of the step at the borders of a gap [default: the method's own choice]
     #[arg(long, value_enum)]
     borders: Option<BordersArg>,
@@ -139,7 +146,13 @@ impl Fill {
         let file = self.read.read(&self.input)?;
         let faults = self.detect.then(|| Faulty::of(&file, &self.input, self.apply)).transpose()?;
         let input = faults.as_ref().map_or(file.take(), |faults| &faults.left);
-        let options = self.method.options(input)?;
+        let session = Session::read(
+            &self.method.session,
+            &self.method.method,
+            (&self.input, input),
+            &self.read,
+        )?;
+        let options = Options { session: session.takes(), ..self.method.options(input)? };
         let run = fill(input, &self.method.method, &options, self.json)?;
         let filled = self.keep_short(run.filled)?;
         let bytes = self.bytes(&file, &filled)?;
@@ -148,6 +161,7 @@ impl Fill {
         let first_frame = file.info().first_frame;
         let summary = FillSummary::new(&filled, first_frame, run.seconds);
         let mut sidecar = self.sidecar(&file, &bytes, &summary)?;
+        sidecar["session"] = session.hashes();
         let detected = faults.as_ref().map(|faults| faults.report.to_json(self.apply));
         if let Some(detected) = &detected {
             sidecar["detected"] = detected.clone();
@@ -177,7 +191,8 @@ impl Fill {
 
     /// Everything that can be refused before any work is done.
     fn check(&self) -> Result<()> {
-        self.output.check(&[&self.input])?;
+        let inputs = [&self.input].into_iter().chain(&self.method.session);
+        self.output.check(&inputs.map(PathBuf::as_path).collect::<Vec<_>>())?;
         self.output.check_beside(SIDECAR)?;
         if self.max_gap.is_some_and(|s| !(s.is_finite() && s > 0.0)) {
             bail!("--max-gap must be a positive number of seconds");

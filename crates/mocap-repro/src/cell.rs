@@ -90,7 +90,10 @@ impl Job<'_> {
     }
 
     fn options(&self) -> Options {
-        Options { seed: self.trial.seed, iterations: self.limit(), ..self.variant.options() }
+        let told = self.variant.settings().session;
+        let session = if told { self.motion.session() } else { Vec::new() };
+        let (seed, iterations) = (self.trial.seed, self.limit());
+        Options { seed, iterations, session, ..self.variant.options() }
     }
 
     /// Refuses options that the method refuses.
@@ -113,6 +116,7 @@ impl Job<'_> {
             "method": self.variant.id(),
             "settings": self.variant.settings(),
             "motion": self.motion.digest(),
+            "session": self.variant.settings().session.then(|| self.motion.session_digests()),
             "hidden": self.trial.hidden,
             "seed": self.trial.seed,
             "iterations": self.limit(),

@@ -20,9 +20,10 @@ pub(crate) struct Settings {
     keep_borders: Option<bool>,
     random_start: Option<bool>,
     published: bool,
+    pub(crate) session: bool,
 }
 
-const KEYS: [&str; 5] = ["lambda", "hidden", "borders", "start", "published"];
+const KEYS: [&str; 6] = ["lambda", "hidden", "borders", "start", "published", "session"];
 
 impl Variant {
     /// Every method of the registry, as it comes.
@@ -38,8 +39,9 @@ impl Variant {
     }
 
     /// Reads `METHOD` or `METHOD+option=value+…`; the options are `lambda` (from 0), `hidden` (from 1),
-    /// `borders` (`join` or `keep`), `start` (`random` or `subspace`), and `published` without a value (all
-    /// settings of the paper), where the method reads them.
+    /// `borders` (`join` or `keep`), `start` (`random` or `subspace`), and without a value `published` (all
+    /// settings of the paper) and `session` (learns from the other motions of the subject), where the method reads
+    /// them.
     ///
     /// # Errors
     /// [`ReproError::Method`] for a method that is not in the registry and for values out of range,
@@ -84,7 +86,8 @@ impl Variant {
             "lambda" => settings.lambda = Some(value.parse().ok()?),
             "hidden" => settings.hidden = Some(value.parse().ok()?),
             "published" if value.is_empty() => settings.published = true,
-            "published" => return None,
+            "session" if value.is_empty() => settings.session = true,
+            "published" | "session" => return None,
             "borders" => settings.keep_borders = Some(borders(value)? == Borders::Keep),
             _ => settings.random_start = Some(start(value)? == Start::Random),
         }
@@ -113,7 +116,7 @@ impl Variant {
     /// Options for the method. Gaps at the ends of a take are held, as the published code did, so
     /// that every hidden sample is scored.
     pub(crate) fn options(&self) -> Options {
-        let Settings { lambda, hidden, keep_borders, random_start, published } = self.settings;
+        let Settings { lambda, hidden, keep_borders, random_start, published, .. } = self.settings;
         let borders = keep_borders.map(|keep| if keep { Borders::Keep } else { Borders::Join });
         let start = random_start.map(|random| if random { Start::Random } else { Start::Subspace });
         let edges = Edges::Hold;

@@ -16,6 +16,8 @@ use crate::ReproError;
 pub struct Motion {
     take: Take,
     digest: String,
+    /// Other motions of the same subject with their digests.
+    session: Vec<(String, Arc<Take>)>,
 }
 
 /// Recordings by name.
@@ -52,7 +54,7 @@ impl Motion {
         for c in take.positions() {
             hasher.update(if c.is_nan() { f64::NAN } else { *c }.to_le_bytes());
         }
-        Self { digest: hex(&hasher.finalize()[..8]), take }
+        Self { digest: hex(&hasher.finalize()[..8]), take, session: Vec::new() }
     }
 
     /// Reads the named recording from a folder; a table without a sampling rate counts as 120 Hz.
@@ -93,7 +95,7 @@ impl Motion {
         Ok(motions)
     }
 
-    /// Reads each of the named recordings.
+    /// Reads each of the named recordings; those whose names begin alike, up to the first `_`, are of one session.
     ///
     /// # Errors
     /// As [`read`](Self::read).
@@ -101,13 +103,35 @@ impl Motion {
         folder: &Path,
         names: impl IntoIterator<Item = &'a str>,
     ) -> Result<Motions, ReproError> {
-        let mut motions = Motions::new();
+        let mut read = BTreeMap::new();
         for name in names {
-            if !motions.contains_key(name) {
-                motions.insert(name.to_owned(), Arc::new(Self::read(folder, name)?));
+            if !read.contains_key(name) {
+                read.insert(name.to_owned(), Self::read(folder, name)?);
             }
         }
-        Ok(motions)
+        let shared: Vec<(String, String, Arc<Take>)> = read
+            .iter()
+            .map(|(name, motion)| (name.clone(), motion.digest.clone(), motion.take.clone().into()))
+            .collect();
+        let subject = |name: &str| name.split('_').next().unwrap_or_default().to_owned();
+        let in_session = |(name, motion): (String, Self)| {
+            let others =
+                shared.iter().filter(|(of, ..)| *of != name && subject(of) == subject(&name));
+            let session =
+                others.map(|(_, digest, take)| (digest.clone(), Arc::clone(take))).collect();
+            (name, Arc::new(Self { session, ..motion }))
+        };
+        Ok(read.into_iter().map(in_session).collect())
+    }
+
+    /// Other recordings of the same subject.
+    pub(crate) fn session(&self) -> Vec<Arc<Take>> {
+        self.session.iter().map(|(_, take)| Arc::clone(take)).collect()
+    }
+
+    /// What tells their recordings from others.
+    pub(crate) fn session_digests(&self) -> Vec<&str> {
+        self.session.iter().map(|(digest, _)| digest.as_str()).collect()
     }
 
     /// The recording.

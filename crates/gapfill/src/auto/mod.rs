@@ -10,12 +10,12 @@ mod rivals;
 mod sigma;
 mod stack;
 
-use std::ops::ControlFlow;
+use std::{ops::ControlFlow, sync::Arc};
 
 use baselines::{CubicSpline, Pca, Pchip, QuinticSpline};
 use bolero_sc::{BoleroSc, BoleroScParams};
 use lds_kalman::filler::{LdsFiller, LdsFillerParams};
-use locality_ridge::ensemble::{Ensemble, Part};
+use locality_ridge::ensemble::{Ensemble, Part, Session};
 use mocap_core::{
     Choice, FillError, FillReport, Filled, Gap, GapContext, GapFiller, IterReport, Refusal,
     Refused, Take, Termination,
@@ -40,7 +40,7 @@ const HOPELESS_M: f64 = 0.06;
 const CURVE_S: f64 = 0.12;
 
 /// What a user may ask of [`Auto`].
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct AutoParams {
     /// Gaps that it expects to fill with a larger error stay open; positive. `None`: all are filled.
     ///
@@ -49,13 +49,16 @@ pub struct AutoParams {
     pub max_error_m: Option<f64>,
     /// What becomes of black-outs at the start or end of the take where only interpolation is left.
     pub edges: Edges,
+    /// Other takes of the session to learn from: the same person with the same markers, by whose names they go.
+    pub session: Vec<Arc<Take>>,
 }
 
 /// Fills each gap with a mixture of the methods that do best in pseudo-gaps like it.
 ///
 /// For one gap:
 /// 1. Eight pseudo-gaps of its length, with the same neighbours seen, are cut where the marker is observed.
-/// 2. Regressions on the neighbours ([`Ensemble`]) fill gap and pseudo-gaps.
+/// 2. Regressions on the neighbours ([`Ensemble`]) fill gap and pseudo-gaps; given other takes of the session, they
+///    learn from those as well.
 /// 3. In gaps of up to a tenth of a second, where no neighbour is seen, and where the regressions err by centimetres in
 ///    the pseudo-gaps, methods of other kinds fill them too: curves, principal components, and in longer gaps the
 ///    dynamical systems `lds` and `bolero-sc` and the body of `ik`. They work on the take as filled so far.
@@ -150,7 +153,9 @@ impl GapFiller for Auto {
         report.refusals.extend(never.into_iter().map(refuse));
 
         let mut canvas = Canvas::new(take);
-        let mut ensemble = Ensemble::new(take);
+        let others = &self.params.session;
+        let session = (!others.is_empty()).then(|| Session::new(take, others)).transpose()?;
+        let mut ensemble = Ensemble::new(take).with_session(session.as_ref());
         for (k, gap) in seen.iter().enumerate() {
             canvas.add(local(take, &mut ensemble, gap));
             let expected = canvas.square_m2(gap).unwrap_or(0.0).sqrt();

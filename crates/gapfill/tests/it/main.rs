@@ -3,6 +3,7 @@
 
 mod auto;
 mod properties;
+mod session;
 
 use std::ops::ControlFlow;
 

@@ -1,5 +1,7 @@
 //! What `auto` promises for any gaps of bodies whose neighbours are seen.
 
+use std::sync::Arc;
+
 use gapfill::{Auto, AutoParams};
 use metrics::border_step;
 use mocap_core::{
@@ -10,6 +12,11 @@ use proptest::prelude::*;
 
 fn fill(take: &Take) -> Filled {
     Auto::new(AutoParams::default()).unwrap().fill(take).unwrap()
+}
+
+fn fill_in_session(take: &Take, session: &[&Take]) -> Filled {
+    let session = session.iter().map(|&take| Arc::new(take.clone())).collect();
+    Auto::new(AutoParams { session, ..AutoParams::default() }).unwrap().fill(take).unwrap()
 }
 
 fn largest_difference(a: &Take, b: &Take, map: impl Fn([f64; 3]) -> [f64; 3]) -> f64 {
@@ -108,9 +115,24 @@ proptest! {
     }
 
     #[test]
+    fn a_fill_moves_with_take_and_session(seed in 0..1000_u64, angle in -3.0..3.0_f64) {
+        let take = gapped(seed).visible().clone();
+        let motion = RigidTransform {
+            rotation: Rotation::about([0.4, 1.0, -0.3], angle),
+            translation: [1.0, -2.0, 0.5],
+        };
+        let moved = |take: &Take| take.map_positions(|_, _, p| motion.apply(p)).unwrap();
+        let other = articulated_take(150, seed + 1);
+        let here = fill_in_session(&take, &[&other]);
+        let there = fill_in_session(&moved(&take), &[&moved(&other)]);
+        let difference = largest_difference(here.take(), there.take(), |p| motion.apply(p));
+        prop_assert!(difference < 1e-9, "{difference}");
+    }
+
+    #[test]
     fn observed_samples_stay_bit_for_bit(seed in 0..1000_u64) {
         let take = gapped(seed).visible().clone();
-        let filled = fill(&take);
+        let filled = fill_in_session(&take, &[&articulated_take(90, seed + 2)]);
         for (t, m) in take.observed().iter() {
             let (before, after) = (take.position(t, m), filled.take().position(t, m));
             let bits = |p: Option<[f64; 3]>| p.map(|p| p.map(f64::to_bits));

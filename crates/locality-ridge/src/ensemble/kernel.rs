@@ -1,7 +1,7 @@
 //! How alike the target is taken to be in two frames.
 #![allow(clippy::inline_always, reason = "a kernel must take on the vectors of its caller")]
 
-use super::tile::Panel;
+use super::{frames_of, tile::Panel};
 
 /// Covariance of the target's local position in two frames, as a multiple of the same unit as `noise`.
 ///
@@ -60,7 +60,10 @@ pub(super) struct Side<'a> {
     pub squares: &'a [f64],
 }
 
-/// A kernel with what depends on time alone, by lag in frames.
+/// After so many time constants a billionth is left.
+const GONE: f64 = 21.0;
+
+/// A kernel with what depends on time alone, by lag in frames; longer lags are as the last.
 pub(super) struct Timed {
     kernel: Kernel,
     drift: Vec<f64>,
@@ -74,6 +77,9 @@ impl Kernel {
         let seconds = |lag: usize| lag as f64 / rate_hz;
         let fade = |lag: usize| (-seconds(lag) / self.curved.fade_s).exp();
         let fades = self.curved.fade_s.is_finite() && self.curved.variance > 0.0;
+        let slowest_s =
+            if fades { self.curved.fade_s.max(self.drift.tau_s) } else { self.drift.tau_s };
+        let lags = lags.min(frames_of(GONE * slowest_s, rate_hz)).max(1);
         Timed {
             kernel: self,
             drift: (0..lags).map(|lag| self.drift.at(seconds(lag))).collect(),
@@ -100,13 +106,15 @@ impl Timed {
         out: &mut [f64],
     ) {
         self.by_pose(products, square, side.squares, out);
+        let last = self.drift.len() - 1;
         if self.fade.is_empty() {
             for ((out, product), at) in out.iter_mut().zip(products).zip(side.frames) {
-                *out += self.kernel.linear * product + self.drift[frame.abs_diff(*at)];
+                let lag = frame.abs_diff(*at).min(last);
+                *out += self.kernel.linear * product + self.drift[lag];
             }
         } else {
             for ((out, product), at) in out.iter_mut().zip(products).zip(side.frames) {
-                let lag = frame.abs_diff(*at);
+                let lag = frame.abs_diff(*at).min(last);
                 *out = self.fade[lag] * *out + self.kernel.linear * product + self.drift[lag];
             }
         }

@@ -1,11 +1,14 @@
 //! Many local regressions of one gap, each with the errors that it makes in pseudo-gaps.
 
 mod factor;
+mod features;
+mod frames;
 mod kernel;
 mod process;
 mod pseudo_gap;
 mod rows;
 mod scene;
+mod session;
 mod tile;
 mod variant;
 
@@ -17,12 +20,16 @@ use mocap_core::{
 };
 
 use self::pseudo_gap::COUNT;
-pub use self::pseudo_gap::{PseudoGap, Sides, pseudo_gaps};
 use self::{
+    frames::Frames,
     process::{LeftOut, Process},
     rows::Rows,
-    scene::{Frames, Sample, Scene},
+    scene::{Sample, Scene},
     variant::{RESIDUALS, VARIANTS},
+};
+pub use self::{
+    pseudo_gap::{PseudoGap, Sides, pseudo_gaps},
+    session::Session,
 };
 use crate::{
     LocalRidgeParams, Residual,
@@ -41,6 +48,9 @@ const MOST_NEIGHBOURS: usize = 20;
 
 /// Neighbours that decide how a gap is cut: two cores.
 const NEAR: usize = 12;
+
+/// What users see of a regression that learns from other takes as well.
+const OF_SESSION: &str = "session";
 
 /// One way of filling a run of frames.
 #[derive(Debug, Clone, PartialEq)]
@@ -79,11 +89,15 @@ pub struct Part {
 /// the gap. Each is tried on eight pseudo-gaps like the gap, whose frames are left out in closed form,
 /// at no further fit.
 ///
+/// With other takes of the session each way is tried twice: alone with the take, and with frames of the others as
+/// well. Both are candidates, as a marker may have been moved between takes.
+///
 /// # Cost
 /// Constant in the length of the take but for ranking the neighbours: at most a few hundred frames
 /// are learnt from. Linear in the frames of the gap.
 pub struct Ensemble<'a> {
     take: &'a Take,
+    session: Option<&'a Session>,
     params: LocalRidgeParams,
     rankings: BTreeMap<usize, Rc<[(usize, f64)]>>,
 }
@@ -94,7 +108,13 @@ impl<'a> Ensemble<'a> {
     pub fn new(take: &'a Take) -> Self {
         let params =
             LocalRidgeParams { regressors: MOST_NEIGHBOURS, ..LocalRidgeParams::default() };
-        Self { take, params, rankings: BTreeMap::new() }
+        Self { take, session: None, params, rankings: BTreeMap::new() }
+    }
+
+    /// An ensemble that learns from the session of its take, too.
+    #[must_use]
+    pub fn with_session(self, session: Option<&'a Session>) -> Self {
+        Self { session, ..self }
     }
 
     /// The gap cut into parts in frame order, each with its candidates.
@@ -152,6 +172,7 @@ impl<'a> Ensemble<'a> {
         let wanted: Vec<usize> = frames.collect();
         let sample = Sample {
             take: self.take,
+            session: None,
             target,
             neighbours: &neighbours,
             reference: rows.middle(),
@@ -159,7 +180,30 @@ impl<'a> Ensemble<'a> {
             wanted: &wanted,
         };
         part.candidates = self.candidates(&sample, &rows, &part);
+        part.candidates.extend(self.of_session(&sample, &rows, &part));
         part
+    }
+
+    /// The candidates that learn from the session; none where it does not show the marker and its neighbours together
+    /// for long enough.
+    fn of_session(&self, alone: &Sample<'_>, rows: &Rows, part: &Part) -> Vec<Candidate> {
+        let Some(session) = self.session else { return Vec::new() };
+        let markers: Vec<usize> =
+            alone.neighbours.iter().map(|&(m, _)| m).chain([alone.target]).collect();
+        let others = session.frames_with(&markers);
+        if others.len() < self.params.min_training {
+            return Vec::new();
+        }
+        let rows = rows.with(&others);
+        let sample = Sample {
+            take: session.joined(),
+            session: Some(session),
+            reference: rows.middle(),
+            rows: rows.frames(),
+            ..*alone
+        };
+        let of_session = |candidate| Candidate { name: OF_SESSION, ..candidate };
+        self.candidates(&sample, &rows, part).into_iter().map(of_session).collect()
     }
 
     fn candidates(&self, sample: &Sample<'_>, rows: &Rows, part: &Part) -> Vec<Candidate> {

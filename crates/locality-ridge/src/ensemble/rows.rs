@@ -55,6 +55,17 @@ impl Rows {
         Self { frames: apart, apart: count }
     }
 
+    /// These and as many frames again of other takes, which come after this one in time.
+    pub fn with(&self, others: &[usize]) -> Self {
+        let (apart, near) = self.frames.split_at(self.apart);
+        let step = others.len().div_ceil(SPREAD).max(1);
+        let others = others.iter().copied().step_by(step);
+        let mut frames: Vec<usize> = apart.iter().copied().chain(others).collect();
+        let apart = frames.len();
+        frames.extend(near);
+        Self { frames, apart }
+    }
+
     pub fn frames(&self) -> &[usize] {
         &self.frames
     }

@@ -44,6 +44,30 @@ fn every_method_beats_standing_still_and_scores_in_json() {
 }
 
 #[test]
+fn other_takes_of_the_session_are_learnt_from_and_listed() {
+    let bench = Bench::with_gap("c3d");
+    bench.ok("synth --motion walk --frames 300 --seed 3 -o other.csv");
+    let object = bench.json("fill gap.c3d -o filled.c3d --session walk.c3d other.csv --json");
+    // The walk itself is among them, so that the gap has been seen.
+    let shares = object["gaps"][0]["mixture"].as_array().unwrap();
+    assert!(shares.iter().any(|share| share["method"] == "session"), "{shares:?}");
+    let sidecar: serde_json::Value =
+        serde_json::from_slice(&bench.read("filled.c3d.fill.json")).unwrap();
+    assert_eq!(sidecar["session"][1]["file"], "other.csv");
+    assert_eq!(sidecar["session"][0]["sha256"].as_str().unwrap().len(), 64);
+
+    let refused = |line: &str| bench.fails(&format!("fill gap.c3d -o no.c3d {line}"));
+    let error = refused("--session walk.c3d --method spline");
+    assert!(error.contains("`auto` does"), "{error}");
+    let error = refused("--session gap.c3d");
+    assert!(error.contains("the recording to fill"), "{error}");
+    bench.ok("synth --motion walk --frames 50 --rate 60 -o slow.c3d");
+    let error = refused("--session slow.c3d");
+    assert!(error.contains("slow.c3d has 60 Hz, not 120 Hz"), "{error}");
+    assert!(!exists(&bench.path("no.c3d")));
+}
+
+#[test]
 fn long_gaps_stay_open_when_asked() {
     let bench = Bench::with_gap("c3d");
     let line = "fill gap.c3d -o filled.c3d --method linear --max-gap 0.2 --json";
