@@ -9,37 +9,15 @@
 use std::{collections::HashMap, path::Path};
 
 use mocap_core::{
-    JointFrames, Motion, RigidTransform, Rotation, Take,
+    JointFrames, Motion, Take,
     geometry::{add, distance, norm, scale, sub},
 };
-use mocap_io::{MarkerFile, MotionFile, ReadOptions};
 use solve_ik::{Body, IkParams, IkSolver, Solution};
 
-const TRIALS: [(&str, &str); 5] =
-    [("02_01", "02"), ("127_07", "127"), ("05_13", "05"), ("135_02", "135"), ("135_07", "135")];
+#[path = "../tests/it/trials.rs"]
+mod trials;
 
-const JOINTS: [&str; 20] = [
-    "root",
-    "upperback",
-    "thorax",
-    "lowerneck",
-    "upperneck",
-    "head",
-    "lfemur",
-    "ltibia",
-    "lfoot",
-    "rfemur",
-    "rtibia",
-    "rfoot",
-    "lhumerus",
-    "lradius",
-    "lwrist",
-    "lhand",
-    "rhumerus",
-    "rradius",
-    "rwrist",
-    "rhand",
-];
+use trials::{JOINTS, TRIALS};
 
 /// Joints that never turn in the reference, and hinges.
 const STIFF: &str = "spread ltibia 70 0.5 0.940 0.342 0\nspread rtibia 70 0.5 0.940 -0.342 0\n\
@@ -52,9 +30,9 @@ fn main() {
     println!("JPE in cm: all of it / its constant part, on the reference's bone / what varies");
     let mut table: Vec<Vec<String>> = JOINTS.iter().map(|j| vec![format!("| {j}")]).collect();
     table.push(vec!["| mean".into()]);
-    for (trial, subject) in TRIALS {
-        let Some(take) = markers(trial, &folder) else { continue };
-        let truth = reference(trial, subject, &folder);
+    for names in TRIALS {
+        let Some((take, truth)) = trials::read(names, &folder) else { continue };
+        let trial = names.0;
         let frames = frames(&truth);
         let known = Body::cmu_41().on(truth.skeleton().clone()).unwrap();
         let solution =
@@ -88,8 +66,8 @@ fn main() {
 /// Places of markers as the references of the other subjects have them on average, for a subject who is none of them.
 fn held_out(folder: &Path) {
     let learn = |(trial, subject): (&str, &'static str)| {
-        let take = markers(trial, folder)?;
-        let body = Body::cmu_41().worn(&take, &reference(trial, subject, folder)).unwrap();
+        let (take, truth) = trials::read((trial, subject), folder)?;
+        let body = Body::cmu_41().worn(&take, &truth).unwrap();
         // Only markers that the take has were learnt.
         let is_worn =
             |name: &str| (0..take.marker_count()).any(|m| take.markers().split(m).1 == name);
@@ -103,8 +81,7 @@ fn held_out(folder: &Path) {
     // One take a subject.
     let learnt: Vec<_> = TRIALS[..4].iter().copied().filter_map(learn).collect();
     for (trial, subject) in TRIALS {
-        let Some(take) = markers(trial, folder) else { continue };
-        let truth = reference(trial, subject, folder);
+        let Some((take, truth)) = trials::read((trial, subject), folder) else { continue };
         let frames = frames(&truth);
         let mut text = String::new();
         for line in Body::cmu_41().to_string().lines() {
@@ -210,22 +187,4 @@ fn parts(joint: &str, truth: &Motion, frames: &[JointFrames], solution: &Solutio
 fn frames(motion: &Motion) -> Vec<JointFrames> {
     let poses = motion.poses().iter();
     poses.map(|pose| motion.skeleton().frames(pose).unwrap()).collect()
-}
-
-fn markers(trial: &str, folder: &Path) -> Option<Take> {
-    let file = folder.join(format!("{trial}.c3d"));
-    if file.exists() {
-        let read = MarkerFile::read(&file, &ReadOptions::default()).unwrap();
-        return Some(read.take().clone());
-    }
-    mocap_testkit::motion(trial)
-}
-
-/// The reference in the axes of the marker files: (z, x, y) of those of the AMC files.
-fn reference(trial: &str, subject: &str, folder: &Path) -> Motion {
-    let asf = folder.join(format!("{subject}.asf"));
-    let amc = folder.join(format!("{trial}.amc"));
-    let read = MotionFile::read(&amc, Some(&asf), &ReadOptions::default()).unwrap();
-    let rotation = Rotation::about([1.0; 3], std::f64::consts::TAU / 3.0);
-    read.motion().transformed(&RigidTransform { rotation, translation: [0.0; 3] }).unwrap()
 }

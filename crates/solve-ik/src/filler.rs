@@ -9,7 +9,7 @@ use ndarray::Array3;
 
 use crate::{
     Body, IkError, IkParams, IkSolver,
-    solver::{Outcome, Ready},
+    solver::{Outcome, Ready, Weights},
     tree::{Anchor, Placed},
 };
 
@@ -44,7 +44,8 @@ impl IkFiller {
         let mut first = None;
         for body in Body::for_markers(self.bodies.clone(), take.markers()) {
             let solver = IkSolver::new(body, self.params)?;
-            match solver.prepare(take) {
+            // Where a limb is gone, the joints it hung on are found as well without.
+            match solver.prepare(take, Weights::Alike) {
                 Ok(ready) => {
                     let outcome = ready.poses(&self.params, take.rate_hz(), observer);
                     return Ok((ready, outcome));
@@ -168,5 +169,5 @@ fn steadiest(take: &Take, column: usize, placed: &[Vec<Placed>]) -> Option<Ancho
     let joints = placed.first().filter(|_| !seen.is_empty())?.len();
     let best = (0..joints).map(|j| (j, on(j))).min_by(|a, b| a.1.0.total_cmp(&b.1.0))?;
     let (near, (_, place)) = best;
-    Some(Anchor { column, site: usize::MAX, near, far: None, place })
+    Some(Anchor { column, site: usize::MAX, near, far: None, place, grip: 1.0 })
 }

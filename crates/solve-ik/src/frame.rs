@@ -8,7 +8,7 @@ use mocap_core::{
 use crate::{
     IkParams,
     normal::{Normal, largest},
-    tree::{Placed, State, Tree},
+    tree::{Anchor, Placed, State, Tree},
 };
 
 /// A joint that leaves its limits by this angle costs as much as a marker that misses by its spread.
@@ -120,8 +120,9 @@ impl<'a> FrameSolver<'a> {
         self.misses.clear();
         let mut cost = 0.0;
         for &(anchor, at) in seen {
-            let miss = sub(self.tree.marker(&self.tree.anchors[anchor as usize], &self.placed), at);
-            let square = dot(miss, miss);
+            let anchor = &self.tree.anchors[anchor as usize];
+            let miss = sub(self.tree.marker(anchor, &self.placed), at);
+            let square = anchor.grip * dot(miss, miss);
             let reach = self.reach;
             cost += if square <= reach * reach {
                 square
@@ -158,9 +159,10 @@ impl<'a> FrameSolver<'a> {
 
     /// Weight of a marker that misses by this.
     #[inline]
-    pub(crate) fn weight(&self, miss: [f64; 3]) -> f64 {
-        let length = norm(miss);
-        if length <= self.reach { self.weight } else { self.weight * self.reach / length }
+    pub(crate) fn weight(&self, anchor: &Anchor, miss: [f64; 3]) -> f64 {
+        let weight = self.weight * anchor.grip;
+        let length = anchor.grip.sqrt() * norm(miss);
+        if length <= self.reach { weight } else { weight * self.reach / length }
     }
 
     /// The normal equations at a pose whose cost was just taken.
@@ -168,7 +170,7 @@ impl<'a> FrameSolver<'a> {
         self.normal.clear(self.placed[0].origin);
         for (&(anchor, at), &miss) in seen.iter().zip(&self.misses) {
             let anchor = &self.tree.anchors[anchor as usize];
-            let weight = self.weight(miss);
+            let weight = self.weight(anchor, miss);
             let here = add(at, miss);
             self.normal.add(anchor.near, weight, here, miss);
             if let Some((far, share)) = anchor.far {

@@ -9,6 +9,7 @@ mod dense;
 mod error;
 mod filler;
 mod frame;
+mod grip;
 mod normal;
 mod params;
 mod sight;

@@ -11,8 +11,10 @@ use crate::{
     body::Body,
     calibrate::{self, Calibrated},
     choose::diverse,
+    grip,
     sight::Sight,
-    size, track,
+    size,
+    track::{self, Scout},
     tree::Tree,
 };
 
@@ -21,6 +23,14 @@ mod solution;
 
 pub(crate) use ready::{Outcome, Ready};
 pub use solution::{CalibrationRound, Solution};
+
+/// What markers weigh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Weights {
+    /// Each as much as its misses say.
+    Own,
+    Alike,
+}
 
 /// Solves labelled takes into the motion of a body.
 #[derive(Debug, Clone)]
@@ -56,7 +66,7 @@ impl IkSolver {
     /// # Errors
     /// [`IkError`] where the take does not tell where the body is.
     pub fn calibrate(&self, take: &Take) -> Result<Body, IkError> {
-        Ok(self.prepare(take)?.body)
+        Ok(self.prepare(take, Weights::Own)?.body)
     }
 
     /// The body fitted to the wearer on some frames of a take, such as a T-pose or a range of motion.
@@ -98,7 +108,7 @@ impl IkSolver {
         take: &Take,
         observer: &mut dyn FnMut(&IterReport) -> ControlFlow<()>,
     ) -> Result<Solution, IkError> {
-        let ready = self.prepare(take)?;
+        let ready = self.prepare(take, Weights::Own)?;
         let outcome = ready.poses(&self.params, take.rate_hz(), observer);
         solution::finish(take, ready, &outcome)
     }
@@ -111,7 +121,7 @@ impl IkSolver {
         self.solve_observed(take, &mut |_| ControlFlow::Continue(()))
     }
 
-    pub(crate) fn prepare(&self, take: &Take) -> Result<Ready, IkError> {
+    pub(crate) fn prepare(&self, take: &Take, weights: Weights) -> Result<Ready, IkError> {
         if take.frames() == 0 {
             return Err(IkError::NoFrames);
         }
@@ -134,6 +144,13 @@ impl IkSolver {
         let look =
             |tree: &Tree| track::scout(tree, &sight, &self.params, take.rate_hz()).ok_or_else(lost);
         let mut scout = look(&tree)?;
+        let weigh = |tree: &mut Tree, scout: &Scout| match weights {
+            Weights::Own => grip::weigh(tree, &sight, scout, &self.params),
+            Weights::Alike => (),
+        };
+        if self.params.calibration_rounds == 0 {
+            weigh(&mut tree, &scout);
+        }
         for _ in 0..self.params.calibration_rounds {
             let mut samples = diverse(&scout, &sight, self.params.calibration_frames);
             let before = tree.clone();
@@ -142,6 +159,7 @@ impl IkSolver {
             body = calibrate::dressed(&body, &before, &tree)?;
             rounds.push(CalibrationRound { frames: samples.len(), steps, cost });
             scout = look(&tree)?;
+            weigh(&mut tree, &scout);
         }
         Ok(Ready { body, tree, sight, scout, rounds })
     }

@@ -34,6 +34,8 @@ pub(crate) struct Anchor {
     pub(crate) far: Option<(usize, f64)>,
     /// In the frame of the first joint, in metres.
     pub(crate) place: [f64; 3],
+    /// Weight over that of the other markers: how steady the marker sits.
+    pub(crate) grip: f64,
 }
 
 impl Anchor {
@@ -114,6 +116,7 @@ impl Tree {
                 near,
                 far,
                 place: add(base, site.place),
+                grip: 1.0,
             });
         }
         tree

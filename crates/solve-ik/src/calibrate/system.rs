@@ -144,7 +144,7 @@ fn eliminate(
     solver.linearise(&sample.state, &sample.seen, &ties);
     let mut coupling = vec![ZERO; layout.starts[layout.expected.len()]];
     for (&(anchor, at), &miss) in sample.seen.iter().zip(&solver.misses) {
-        let weight = solver.weight(miss);
+        let weight = solver.weight(&tree.anchors[anchor as usize], miss);
         let slopes = layout.slopes(tree, &solver, anchor as usize);
         let arms = arms(tree, &solver, anchor as usize, add(at, miss));
         for (i, (block, slope)) in slopes.iter().enumerate() {

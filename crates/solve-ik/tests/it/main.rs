@@ -9,4 +9,5 @@ mod real;
 mod refusals;
 mod synthetic;
 mod t_pose;
+mod trials;
 mod worn;

@@ -1,68 +1,20 @@
 //! Real takes against the motion that the capture's own software fitted to the same markers.
 
-use std::path::Path;
-
 use metrics::{JointChoice, JointFrame, joint_errors};
-use mocap_core::{Motion, RigidTransform, Rotation, Take};
-use mocap_io::{MarkerFile, MotionFile, ReadOptions};
+use mocap_core::{Motion, Rotation};
 use solve_ik::{Body, IkParams, IkSolver};
 
-use crate::worn::Tracks;
-
-/// Joints that are compared: all that markers tell of, toes left out, for which the AMC files are inexact.
-const JOINTS: [&str; 20] = [
-    "root",
-    "upperback",
-    "thorax",
-    "lowerneck",
-    "upperneck",
-    "head",
-    "lfemur",
-    "ltibia",
-    "lfoot",
-    "rfemur",
-    "rtibia",
-    "rfoot",
-    "lhumerus",
-    "lradius",
-    "lwrist",
-    "lhand",
-    "rhumerus",
-    "rradius",
-    "rwrist",
-    "rhand",
-];
+use crate::{
+    trials::{self, JOINTS, TRIALS},
+    worn::Tracks,
+};
 
 /// Index of the joint above each of them; the root has none.
 const PARENTS: [usize; 20] = [20, 0, 1, 2, 3, 4, 0, 6, 7, 0, 9, 10, 2, 12, 13, 14, 2, 16, 17, 18];
 
-/// Trial, skeleton, and the most that joints may be off on average in centimetres, with bones of one's own and with those of
-/// the AMC file. The reference misses its own markers by 12 to 45 mm; `docs/fidelity/solve-ik.md` says what that means.
-const TRIALS: [(&str, &str, [f64; 2]); 5] = [
-    ("02_01", "02", [1.8, 1.5]),
-    ("127_07", "127", [2.3, 2.1]),
-    ("05_13", "05", [4.2, 4.0]),
-    ("135_02", "135", [4.8, 4.6]),
-    ("135_07", "135", [6.1, 5.9]),
-];
-
-fn markers(trial: &str, folder: &Path) -> Option<Take> {
-    let file = folder.join(format!("{trial}.c3d"));
-    if file.exists() {
-        let read = MarkerFile::read(&file, &ReadOptions::default()).unwrap();
-        return Some(read.take().clone());
-    }
-    mocap_testkit::motion(trial)
-}
-
-/// The reference motion in the axes of the marker files: (z, x, y) of those of the AMC files.
-fn reference(trial: &str, subject: &str, folder: &Path) -> Motion {
-    let asf = folder.join(format!("{subject}.asf"));
-    let amc = folder.join(format!("{trial}.amc"));
-    let read = MotionFile::read(&amc, Some(&asf), &ReadOptions::default()).unwrap();
-    let rotation = Rotation::about([1.0; 3], std::f64::consts::TAU / 3.0);
-    read.motion().transformed(&RigidTransform { rotation, translation: [0.0; 3] }).unwrap()
-}
+/// The most that joints of each trial may be off on average in centimetres, with bones of one's own and with those of the AMC
+/// file. The reference misses its own markers by 12 to 45 mm; `docs/fidelity/solve-ik.md` says what that means.
+const LIMITS: [[f64; 2]; 5] = [[1.8, 1.5], [2.3, 2.1], [4.2, 4.0], [4.8, 4.6], [6.1, 5.9]];
 
 /// Mean position error in cm, and mean local and global orientation errors in degrees.
 fn score(found: &Motion, truth: &Motion) -> [f64; 3] {
@@ -85,9 +37,9 @@ fn mean(values: &[f64]) -> f64 {
 #[test]
 fn joints_lie_where_the_capture_software_found_them() {
     let Some(folder) = mocap_testkit::recording("cmu/paired") else { return };
-    for (trial, subject, limits) in TRIALS {
-        let Some(take) = markers(trial, &folder) else { continue };
-        let truth = reference(trial, subject, &folder);
+    for (names, limits) in TRIALS.into_iter().zip(LIMITS) {
+        let Some((take, truth)) = trials::read(names, &folder) else { continue };
+        let trial = names.0;
         let known = Body::cmu_41().on(truth.skeleton().clone()).unwrap();
         let bodies = [("own bones", Body::cmu_41()), ("bones of the AMC", known)];
         for ((variant, body), limit) in bodies.into_iter().zip(limits) {
@@ -114,14 +66,14 @@ fn joints_lie_where_the_capture_software_found_them() {
 fn a_body_learnt_from_a_reference_comes_as_near_to_it_as_its_markers_let_it() {
     let Some(folder) = mocap_testkit::recording("cmu/paired") else { return };
     let fixed = IkParams { calibration_rounds: 0, ..IkParams::default() };
-    let learn = |trial: &str, subject: &str| {
-        let truth = reference(trial, subject, &folder);
-        let take = markers(trial, &folder)?;
+    let learn = |names| {
+        let (take, truth) = trials::read(names, &folder)?;
         let body = Body::cmu_41().worn(&take, &truth).unwrap();
         Some((take, truth, body))
     };
-    for (trial, subject, _) in TRIALS {
-        let Some((take, truth, body)) = learn(trial, subject) else { continue };
+    for names in TRIALS {
+        let Some((take, truth, body)) = learn(names) else { continue };
+        let trial = names.0;
         let misses = body.to_string();
         let spread = |line: &str| -> Option<f64> {
             let name = line.strip_prefix("marker ")?.split(' ').next()?;
@@ -139,7 +91,8 @@ fn a_body_learnt_from_a_reference_comes_as_near_to_it_as_its_markers_let_it() {
     }
     // From one take of a session to the other.
     for (from, to) in [("135_02", "135_07"), ("135_07", "135_02")] {
-        let (Some((_, _, body)), Some((take, truth, _))) = (learn(from, "135"), learn(to, "135"))
+        let (Some((_, _, body)), Some((take, truth, _))) =
+            (learn((from, "135")), learn((to, "135")))
         else {
             continue;
         };

@@ -113,6 +113,22 @@ fn bones_are_found_where_the_places_of_the_markers_are_known() {
     }
 }
 
+/// What one person does not show: the mean over ten, of the motion whose joints are hardest to find.
+#[test]
+fn joints_of_ten_people_who_run_are_found_where_the_places_of_the_markers_are_known() {
+    const PEOPLE: u64 = 10;
+    let off = |seed| {
+        let recorded = record(Activity::Run, 600, seed);
+        let body = true_layout(&recorded, &synthetic_body());
+        errors(&solve_with(body, recorded.take()), &recorded).0
+    };
+    let offs: Vec<f64> = (70..70 + PEOPLE).map(off).collect();
+    let mean = offs.iter().sum::<f64>() / PEOPLE as f64;
+    let worst = offs.iter().copied().fold(0.0, f64::max);
+    println!("ten who run: JPE {:.2} cm, at most {:.2} cm", 100.0 * mean, 100.0 * worst);
+    assert!(mean < 0.005, "{mean} m");
+}
+
 #[test]
 fn fingers_are_solved_from_their_markers() {
     for (hands, limit_mm) in [(Hands::Five, 10.0), (Hands::Ten, 8.0)] {
