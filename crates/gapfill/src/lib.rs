@@ -3,6 +3,7 @@
 mod auto;
 mod joined;
 mod options;
+mod own_axes;
 mod registry;
 mod step;
 

@@ -97,7 +97,8 @@ struct MethodArgs {
     /// Seed of a random start: the same seed gives the same bits
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
-    /// What becomes of gaps at the start or end of the take, for methods that interpolate
+    /// What becomes of gaps at the start or end of the take, for methods that interpolate, and where no marker is seen there,
+    /// for `auto`
     #[arg(long, value_enum, default_value = "refuse")]
     edges: EdgesArg,
     /// Leave gaps open that are expected to be filled with a larger error, for `auto`

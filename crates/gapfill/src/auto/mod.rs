@@ -8,9 +8,13 @@ mod pace;
 mod rival;
 mod rivals;
 mod sigma;
+mod simplex;
 mod stack;
 
-use std::{ops::ControlFlow, sync::Arc};
+use std::{
+    ops::{ControlFlow, Range},
+    sync::Arc,
+};
 
 use baselines::{CubicSpline, Pca, Pchip, QuinticSpline};
 use bolero_sc::{BoleroSc, BoleroScParams};
@@ -28,7 +32,7 @@ use self::{
     rival::Rival,
     rivals::compete,
 };
-use crate::{Edges, Joined};
+use crate::{Edges, Joined, own_axes::OwnAxes};
 
 /// Where the neighbours expect to err by more, other methods are asked too.
 const POOR_M: f64 = 0.025;
@@ -47,7 +51,8 @@ pub struct AutoParams {
     /// # Units
     /// Metres, root mean square of the 3-D error over a gap.
     pub max_error_m: Option<f64>,
-    /// What becomes of black-outs at the start or end of the take where only interpolation is left.
+    /// What becomes of gaps that reach to where the start or end of the take shows no marker at all: they stay open, or
+    /// are filled by curves that hold the nearest position and by models that go on moving.
     pub edges: Edges,
     /// Other takes of the session to learn from: the same person with the same markers, by whose names they go.
     pub session: Vec<Arc<Take>>,
@@ -117,9 +122,9 @@ impl Auto {
         let edges = params.edges;
         let rivals = vec![
             Rival::quick("spline", 1.2, CubicSpline { edges }),
-            Rival { turns: false, ..Rival::quick("pchip", 1.0, Pchip { edges }) },
+            Rival::quick("pchip", 1.0, OwnAxes::new(Pchip { edges })),
             Rival::quick("vicon-spline", 1.6, QuinticSpline),
-            Rival { turns: false, ..Rival::quick("pca", 0.8, Pca::default()) },
+            Rival::quick("pca", 0.8, OwnAxes::new(Pca::default())),
             Rival::model("lds", models.lds),
             Rival::model("bolero-sc", models.bolero),
             Rival { growth: 0.4, body: true, ..Rival::model("ik", models.ik) },
@@ -205,6 +210,13 @@ fn local(take: &Take, ensemble: &mut Ensemble<'_>, gap: &Gap) -> Vec<Piece> {
     ensemble.parts(gap).into_iter().map(piece).collect()
 }
 
+/// From the first to the last frame that shows any marker. What a body does before and after nobody can know.
+fn lit(take: &Take) -> Range<usize> {
+    let shows = |&t: &usize| (0..take.marker_count()).any(|m| take.is_observed(t, m));
+    let first = (0..take.frames()).find(shows).unwrap_or(0);
+    first..(first..take.frames()).rev().find(shows).map_or(first, |t| t + 1)
+}
+
 /// Whether other methods may do better than the neighbours.
 fn is_contested(piece: &Piece, rate_hz: f64) -> bool {
     is_short(piece.frames.len(), rate_hz)
@@ -221,11 +233,13 @@ impl Auto {
     fn compete(&self, take: &Take, canvas: &mut Canvas<'_>) -> Result<(), FillError> {
         let rate_hz = take.rate_hz();
         let base = canvas.filled_but(&|piece| is_contested(piece, rate_hz))?;
-        let open: Vec<Gap> = base
-            .gaps()
-            .into_iter()
-            .filter(|gap| gap.context(take.frames()) != GapContext::Whole)
-            .collect();
+        let lit = lit(take);
+        let known = |gap: &Gap| {
+            let inside = gap.frames.start >= lit.start && gap.frames.end <= lit.end;
+            gap.context(take.frames()) != GapContext::Whole
+                && (inside || self.params.edges == Edges::Hold)
+        };
+        let open: Vec<Gap> = base.gaps().into_iter().filter(known).collect();
         if open.is_empty() {
             return Ok(());
         }
@@ -247,7 +261,14 @@ impl Auto {
         termination: Termination,
     ) -> Result<Choice, Refusal> {
         let stopped = termination == Termination::Stopped;
-        let missing = if stopped { Refusal::Stopped } else { Refusal::NoNeighbour };
+        let lit = lit(canvas.take());
+        let missing = if stopped {
+            Refusal::Stopped
+        } else if gap.frames.start < lit.start || gap.frames.end > lit.end {
+            Refusal::OneSided
+        } else {
+            Refusal::NoNeighbour
+        };
         let choice = canvas.settle(gap).ok_or(missing)?;
         match (self.params.max_error_m, choice.expected_m) {
             (Some(limit_m), Some(expected_m)) if expected_m > limit_m => {

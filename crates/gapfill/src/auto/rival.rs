@@ -20,19 +20,17 @@ pub(super) struct Rival {
     pub growth: f64,
     /// It knows how bodies move, as long as it sees a part of them.
     pub body: bool,
-    /// It fills a turned take with the turned fill.
-    pub turns: bool,
 }
 
 impl Rival {
     /// A method that learns little.
     pub fn quick(name: &'static str, growth: f64, filler: impl GapFiller + 'static) -> Self {
-        Self { name, filler: Box::new(filler), costly: false, growth, body: false, turns: true }
+        Self { name, filler: Box::new(filler), costly: false, growth, body: false }
     }
 
     /// A method that learns a model of the take.
     pub fn model(name: &'static str, filler: Box<dyn GapFiller>) -> Self {
-        Self { name, filler, costly: true, growth: growth::OF_MODELS, body: false, turns: true }
+        Self { name, filler, costly: true, growth: growth::OF_MODELS, body: false }
     }
 
     /// What speaks for it in a gap before it is tried: a few pseudo-gaps of two seconds say less of a method than

@@ -9,7 +9,7 @@ use mocap_core::{
 };
 
 use super::{
-    growth, is_short,
+    growth,
     mixture::{Mixture, Stock, Tried},
     pace,
     rival::Rival,
@@ -172,12 +172,9 @@ impl Group {
         Sides { left: frames.start > 0, right: frames.end < take.frames() }
     }
 
-    /// Whether a rival can know anything of the gaps. What neighbours fill well is not left to methods that depend on
-    /// the axes of the recording.
+    /// Whether a rival can know anything of the gaps.
     fn admits(&self, take: &Take, rival: &Rival) -> bool {
-        let dark = self.is_dark(take);
-        let short = is_short(self.gaps[0].len(), take.rate_hz());
-        if dark { !rival.body } else { rival.turns || !short }
+        !(rival.body && self.is_dark(take))
     }
 
     /// Whether no marker is seen in all of its frames.

@@ -3,6 +3,8 @@
 use locality_ridge::ensemble::Candidate;
 use mocap_core::geometry::{dot, sub};
 
+use super::simplex;
+
 /// Before they are adjusted, weights go with the mean square error to the power of minus this,
 /// with [`ENOUGH`] pseudo-gaps; the fewer there are, the less they tell.
 pub(super) const SHARPNESS: f64 = 2.0;
@@ -13,9 +15,6 @@ const HOLD: f64 = 0.3;
 
 /// Pseudo-gaps that are not few.
 const ENOUGH: f64 = 8.0;
-
-/// Steps of the adjustment.
-const STEPS: usize = 60;
 
 /// How much the errors of markers that are missing together count beside a marker's own.
 const TOGETHER: f64 = 5.0;
@@ -77,26 +76,8 @@ fn of_products(products: &[f64], credit: &[f64], tried: usize) -> Vec<f64> {
     if !(scale > 0.0 && scale.is_finite()) {
         return prior;
     }
-    let (rate, hold) = (0.5 / scale, few * HOLD * scale);
-    let mut weights = prior.clone();
-    for _ in 0..STEPS {
-        let gradient: Vec<f64> = (0..n)
-            .map(|k| {
-                let row = &products[k * n..(k + 1) * n];
-                let error: f64 = row.iter().zip(&weights).map(|(c, w)| c * w).sum();
-                2.0 * error + hold * (weights[k].max(1e-12) / prior[k].max(1e-12)).ln()
-            })
-            .collect();
-        let mean: f64 = gradient.iter().zip(&weights).map(|(g, w)| g * w).sum();
-        for (w, g) in weights.iter_mut().zip(&gradient) {
-            *w *= (-rate * (g - mean)).clamp(-5.0, 5.0).exp();
-        }
-        let sum: f64 = weights.iter().sum();
-        for w in &mut weights {
-            *w /= sum;
-        }
-    }
-    weights
+    let scaled: Vec<f64> = products.iter().map(|p| p / scale).collect();
+    simplex::least(&scaled, &prior, few * HOLD)
 }
 
 /// Products of errors, larger for candidates that are farther from the best one in the gap than in pseudo-gaps: a curve

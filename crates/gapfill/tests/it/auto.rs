@@ -1,6 +1,6 @@
 //! What `auto` promises beyond the contract that every filler keeps.
 
-use gapfill::{Auto, AutoParams};
+use gapfill::{Auto, AutoParams, Edges};
 use mocap_core::{
     FillError, GapFiller, Mask, Refusal, RigidTransform, Rotation, Take, geometry::distance,
 };
@@ -66,4 +66,20 @@ fn a_limit_out_of_range_is_named() {
         let error = Auto::new(params).map(|_| ()).unwrap_err();
         assert!(matches!(error, FillError::Parameter { field: "max_error_m", .. }));
     }
+}
+
+/// What a body does before anybody sees it nobody can know; a user who wants it filled may say so.
+#[test]
+fn ends_without_any_marker_stay_open_unless_asked() {
+    let truth = articulated_take(200, 4);
+    let dark = |t: usize, m: usize| t < 30 || (m == 2 && t < 50) || (m == 5 && t > 190);
+    let take = truth.hide(&Mask::from_fn(200, 8, dark)).unwrap();
+    let filled = auto(None).fill(&take).unwrap();
+    let refused: Vec<usize> = filled.report().refusals.iter().map(|r| r.gap.marker).collect();
+    assert_eq!(refused, (0..8).collect::<Vec<_>>());
+    assert!(filled.report().refusals.iter().all(|r| r.reason == Refusal::OneSided));
+    assert!(filled.take().position(195, 5).is_some(), "its neighbours are seen");
+    let params = AutoParams { edges: Edges::Hold, ..AutoParams::default() };
+    let held = Auto::new(params).unwrap().fill(&take).unwrap();
+    assert!(held.report().refusals.is_empty() && held.take().position(0, 0).is_some());
 }

@@ -51,6 +51,28 @@ proptest! {
         prop_assert!(difference < 1e-9, "{difference}");
     }
 
+    /// Curves, components and systems compete where a whole segment, or all of the body, is lost.
+    #[test]
+    fn a_fill_of_lost_segments_moves_with_the_take(
+        seed in 0..1000_u64,
+        axis in prop::array::uniform3(-1.0..1.0_f64),
+        angle in -3.0..3.0_f64,
+        length in 5..40_usize,
+        all in prop::bool::ANY,
+    ) {
+        let truth = articulated_take(300, seed);
+        let lost = if all { 0..8 } else { 4..8 };
+        let hidden =
+            Mask::from_fn(300, 8, |t, m| lost.contains(&m) && (120..120 + length).contains(&t));
+        let take = truth.hide(&hidden).unwrap();
+        let motion =
+            RigidTransform { rotation: Rotation::about(axis, angle), translation: [0.3, 2.0, -1.0] };
+        let moved = take.map_positions(|_, _, p| motion.apply(p)).unwrap();
+        let (here, there) = (fill(&take), fill(&moved));
+        let difference = largest_difference(here.take(), there.take(), |p| motion.apply(p));
+        prop_assert!(difference < 1e-9, "{difference}");
+    }
+
     #[test]
     fn the_order_of_markers_does_not_matter(
         seed in 0..1000_u64,
