@@ -41,10 +41,11 @@ impl Inspect {
     fn markers(&self, file: &MarkerFile) -> Result<()> {
         let (take, info) = (file.take(), file.info());
         let summary = TakeSummary::new(take, info.first_frame);
-        let up = UpAxis::guess(take, &MarkerKnowledge::cmu_41()).map(|up| match up {
-            UpAxis::Y => "Y",
-            UpAxis::Z => "Z",
-        });
+        let up =
+            UpAxis::guess(take, &MarkerKnowledge::for_markers(take.markers())).map(|up| match up {
+                UpAxis::Y => "Y",
+                UpAxis::Z => "Z",
+            });
         if self.json {
             let mut object = serde_json::to_value(&summary)?;
             let missing = json!({

@@ -8,13 +8,13 @@ use mocap_core::MarkerKnowledge;
 #[derive(Debug, Clone, Args)]
 pub(crate) struct MarkerSetArgs {
     /// File that describes a marker set: lines `marker NAME`, `alias NAME OTHER…`, `bone A B`, `role back NAME…`, `role
-    /// front NAME…`; may be repeated. The CMU 41 markers and Plug-in Gait names are known
+    /// front NAME…`; may be repeated. The CMU 41 markers, Plug-in Gait names, front_waist-53 and production-57 are known
     #[arg(long, value_name = "FILE")]
     marker_set: Vec<PathBuf>,
 }
 
 impl MarkerSetArgs {
-    /// The user's sets, then the built-in one.
+    /// The user's sets, then the built-in ones.
     pub(crate) fn known(&self) -> Result<Vec<MarkerKnowledge>> {
         let mut known = Vec::new();
         for path in &self.marker_set {
@@ -22,7 +22,7 @@ impl MarkerSetArgs {
                 .with_context(|| format!("cannot read {}", path.display()))?;
             known.push(MarkerKnowledge::parse(&text, &path.display().to_string())?);
         }
-        known.push(MarkerKnowledge::cmu_41());
+        known.extend(MarkerKnowledge::built_in());
         Ok(known)
     }
 }

@@ -128,7 +128,8 @@ impl Solve {
         progress.finish();
         let solution =
             solution.with_context(|| format!("cannot solve {}", self.input.display()))?;
-        let up = UpAxis::guess(take, &MarkerKnowledge::cmu_41()).unwrap_or(UpAxis::Z);
+        let up =
+            UpAxis::guess(take, &MarkerKnowledge::for_markers(take.markers())).unwrap_or(UpAxis::Z);
         let motion = match (self.axes, up) {
             (Axes::YUp, UpAxis::Z) => lie_down(&solution.motion)?,
             _ => solution.motion.clone(),

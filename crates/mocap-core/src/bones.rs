@@ -60,7 +60,7 @@ pub enum BoneRule {
     Pairs(Vec<(usize, usize)>),
     /// Pairs whose distance hardly changes.
     Rigid(RigidPairs),
-    /// The pairs of the first of these marker sets of which the take wears at least half; if it wears
+    /// The pairs of that of these marker sets of which the take wears the largest share, at least half of it; if there is
     /// none, the pairs whose distance hardly changes.
     Known(Vec<MarkerKnowledge>),
 }
@@ -75,10 +75,10 @@ pub enum BoneSource {
 }
 
 impl Default for BoneSource {
-    /// The named pairs of the CMU marker set where a take wears it, else the pairs whose distance
-    /// hardly changes.
+    /// The named pairs of a marker set that ships with the crate where a take wears one, else the pairs whose
+    /// distance hardly changes.
     fn default() -> Self {
-        Self::Estimated(BoneRule::Known(vec![MarkerKnowledge::cmu_41()]))
+        Self::Estimated(BoneRule::Known(MarkerKnowledge::built_in()))
     }
 }
 
@@ -154,8 +154,10 @@ impl BoneSet {
             BoneRule::Pairs(pairs) => Self::from_pairs(take, pairs),
             BoneRule::Rigid(rule) => Self::rigid(take, *rule),
             BoneRule::Known(sets) => {
-                match sets.iter().find(|set| set.coverage(take.markers()) >= WORN) {
-                    Some(set) => Self::from_pairs(take, &set.bone_pairs(take.markers())),
+                let markers = take.markers();
+                let best = MarkerKnowledge::best(sets, markers);
+                match best.filter(|set| set.coverage(markers) >= WORN) {
+                    Some(set) => Self::from_pairs(take, &set.bone_pairs(markers)),
                     None => Self::rigid(take, RigidPairs::default()),
                 }
             }

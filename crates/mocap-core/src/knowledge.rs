@@ -3,6 +3,8 @@ use std::collections::{BTreeMap, HashMap};
 use crate::{CoreError, MarkerSet, marker_set::split_name};
 
 const CMU_41: &str = include_str!("../data/cmu-41.markers");
+const FRONT_WAIST_53: &str = include_str!("../data/front_waist-53.markers");
+const PRODUCTION_57: &str = include_str!("../data/production-57.markers");
 
 /// What is known of a named marker set: its markers, their other names, bones and roles.
 ///
@@ -33,7 +35,56 @@ impl MarkerKnowledge {
     /// Never: the file is part of the crate and read by its tests.
     #[must_use]
     pub fn cmu_41() -> Self {
-        Self::parse(CMU_41, "cmu-41.markers").expect("the built-in file is well-formed")
+        built_in(CMU_41, "cmu-41.markers")
+    }
+
+    /// The 53 markers of [Pan23] with one in the middle of the front waist, and up to ten on each hand.
+    ///
+    /// # Panics
+    /// Never: the file is part of the crate and read by its tests.
+    #[must_use]
+    pub fn front_waist_53() -> Self {
+        built_in(FRONT_WAIST_53, "front_waist-53.markers")
+    }
+
+    /// The 57 markers of [Pan23] as worn in production, and up to ten on each hand.
+    ///
+    /// # Panics
+    /// Never: the file is part of the crate and read by its tests.
+    #[must_use]
+    pub fn production_57() -> Self {
+        built_in(PRODUCTION_57, "production-57.markers")
+    }
+
+    /// Every set that ships with the crate, the one of the CMU database first.
+    #[must_use]
+    pub fn built_in() -> Vec<Self> {
+        vec![Self::cmu_41(), Self::front_waist_53(), Self::production_57()]
+    }
+
+    /// The set of which a take has the largest share; of equals the first, `None` where it has nothing of any.
+    #[must_use]
+    pub fn best<'a>(sets: &'a [Self], markers: &MarkerSet) -> Option<&'a Self> {
+        let shares = sets.iter().map(|set| (set.coverage(markers), set));
+        let worn = shares.filter(|(share, _)| *share > 0.0);
+        // The first of equals, where `max_by` would give the last.
+        worn.reduce(|best, next| if next.0 > best.0 { next } else { best }).map(|(_, set)| set)
+    }
+
+    /// The set that ships with the crate and fits a take best; that of the CMU database where none does.
+    ///
+    /// ```
+    /// use mocap_core::{MarkerKnowledge, MarkerSet};
+    ///
+    /// let waist = ["kim:LFWT", "kim:MFWT", "kim:RFWT", "kim:LBWT", "kim:MBWT", "kim:RBWT"];
+    /// let markers = MarkerSet::new(waist)?;
+    /// assert_eq!(MarkerKnowledge::for_markers(&markers).name(), "front_waist-53");
+    /// # Ok::<(), mocap_core::CoreError>(())
+    /// ```
+    #[must_use]
+    pub fn for_markers(markers: &MarkerSet) -> Self {
+        let sets = Self::built_in();
+        Self::best(&sets, markers).cloned().unwrap_or_else(Self::cmu_41)
     }
 
     /// Reads the knowledge from its text form; `file` is the name that errors show.
@@ -169,4 +220,8 @@ impl MarkerKnowledge {
         }
         subjects.into_values().collect()
     }
+}
+
+fn built_in(text: &str, file: &str) -> MarkerKnowledge {
+    MarkerKnowledge::parse(text, file).expect("the built-in file is well-formed")
 }

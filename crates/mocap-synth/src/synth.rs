@@ -236,7 +236,7 @@ impl Synth {
         let take = Take::new(Arc::clone(&markers), rate_hz, cube(markers.len(), measured), all())?;
         let joints = cube(self.body.skeleton.joints().len(), joints);
         let motion = Motion::new(Arc::clone(&self.body.skeleton), rate_hz, poses)?;
-        let pairs = MarkerKnowledge::cmu_41().bone_pairs(&markers);
+        let pairs = MarkerKnowledge::for_markers(&markers).bone_pairs(&markers);
         let bones = BoneSet::estimate(&skin, &BoneRule::Pairs(pairs))?;
         let attachments = self.worn.iter().map(Worn::attachment).collect();
         Ok(SyntheticTake { take, skin, motion, joints, bones, attachments, sliding_m })
@@ -287,7 +287,7 @@ impl SyntheticTake {
         self.joints.view()
     }
 
-    /// The bones that the CMU marker set names, with their mean true lengths; empty for a single frame.
+    /// The bones that the marker set names, with their mean true lengths; empty for a single frame.
     #[must_use]
     pub fn bones(&self) -> &BoneSet {
         &self.bones

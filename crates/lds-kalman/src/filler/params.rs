@@ -19,7 +19,7 @@ const FRAMES_EACH: usize = 9;
 /// The coordinates in which a model is learnt.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum Coordinates {
-    /// Relative to the body where every frame shows reference markers of the CMU marker set, else
+    /// Relative to the body where every frame shows reference markers of a marker set that is known, else
     /// as recorded: where the body is lost, its motion through the room is the surest thing to go by.
     #[default]
     Auto,
@@ -35,7 +35,7 @@ impl Coordinates {
         match self {
             Self::World => Ok(None),
             Self::Body(known) => body_frame(take, known).map(Some),
-            Self::Auto => match body_frame(take, &MarkerKnowledge::cmu_41()) {
+            Self::Auto => match body_frame(take, &MarkerKnowledge::for_markers(take.markers())) {
                 Err(FillError::Core(CoreError::NoBodyFrame)) => Ok(None),
                 Ok(frame) if frame.bridged() > 0 => Ok(None),
                 found => found.map(Some),

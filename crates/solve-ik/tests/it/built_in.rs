@@ -10,39 +10,63 @@ use crate::worn::{people_body, record_with};
 
 const LAYOUTS: [Layout; 2] = [Layout::FrontWaist53, Layout::Production57];
 
-/// The text of the body of a layout, from the means over forty people.
+/// Other names of markers: in Vicon's own body of 53 markers `LWRE` sits on the forearm and `LHIP` on the thigh.
+const ALIASES: &str = "\
+alias LFRM LWRE
+alias RFRM RWRE
+alias LTHI LHIP
+alias RTHI RHIP
+";
+
+/// The body of a layout as a text, means over forty people.
+fn means(layout: Layout) -> String {
+    people_body(&SynthParams { layout, hands: Hands::Ten, ..SynthParams::default() }).to_string()
+}
+
+/// A line of it in the axes of the file.
+fn converted(line: &str) -> String {
+    let words: Vec<&str> = line.split(' ').collect();
+    let first = match words[0] {
+        "joint" | "marker" => 3,
+        "spread" => 4,
+        "t-pose" => 2,
+        _ => words.len(),
+    };
+    let mut words: Vec<String> = words.into_iter().map(str::to_owned).collect();
+    // The generator's people face x and have z up.
+    if let Some(place) = words.get_mut(first..first + 3) {
+        place.rotate_left(1);
+        for c in place {
+            *c = format!("{:.4}", c.parse::<f64>().unwrap() + 0.0);
+        }
+    }
+    words.join(" ") + "\n"
+}
+
+/// The file of a layout.
 fn written(layout: Layout) -> String {
-    let params = SynthParams { layout, hands: Hands::Ten, ..SynthParams::default() };
     let mut text = format!(
         "# A body for the marker layout {layout}, with up to ten markers on each hand.\n\
          #\n\
          # Rest pose: upright with hanging arms, x to the left, y up, z ahead; metres. Bones and places of markers are means\n\
          # over forty people of mocap-synth. `SOLVE_IK_WRITE=1 cargo test -p solve-ik built_in` writes this file.\n"
     );
-    for line in people_body(&params).to_string().lines() {
-        let words: Vec<&str> = line.split(' ').collect();
-        let first = match words[0] {
-            "name" => {
-                writeln!(text, "name {layout}").unwrap();
-                continue;
-            }
-            "joint" | "marker" => 3,
-            "spread" => 4,
-            "t-pose" => 2,
-            _ => words.len(),
-        };
-        let mut words: Vec<String> = words.into_iter().map(str::to_owned).collect();
-        // The generator's people face x and have z up.
-        if let Some(place) = words.get_mut(first..first + 3) {
-            place.rotate_left(1);
-            for c in place {
-                *c = format!("{:.4}", c.parse::<f64>().unwrap() + 0.0);
-            }
+    for line in means(layout).lines() {
+        if line.starts_with("name ") {
+            writeln!(text, "name {layout}").unwrap();
+        } else {
+            text += &converted(line);
         }
-        text += &words.join(" ");
-        text.push('\n');
     }
-    text
+    if layout == Layout::FrontWaist53 {
+        text += "# Worn on the sides of the waist by some, as in production-57.\n";
+        let others = means(Layout::Production57);
+        let sides = |line: &&str| {
+            ["marker LMWT ", "marker RMWT "].iter().any(|name| line.starts_with(name))
+        };
+        text.extend(others.lines().filter(sides).map(converted));
+    }
+    text + ALIASES
 }
 
 /// Mean distance of the joints of the trunk and limbs from where they really are, in metres.
