@@ -1,3 +1,4 @@
+mod faulty;
 mod session;
 
 use std::{
@@ -9,16 +10,14 @@ use std::{
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use gapfill::{Bones, Borders, Coordinates, Edges, Options};
-use marker_faults::FaultDetector;
 use mocap_core::{BoneSet, Filled, Mask, Refusal, Take};
 use mocap_io::{Edit, Format, MarkerFile, encode_markers, read_bones};
 use mocap_report::{FillSummary, PlotInput, TakeSummary, html_page, render_png, render_svg};
 use serde_json::json;
 use sha2::{Digest, Sha256};
 
-use self::session::Session;
+use self::{faulty::Faulty, session::Session};
 use crate::{
-    detect,
     files::{OutputArgs, ReadArgs, create_folder},
     marker_sets::MarkerSetArgs,
     progress::Progress,
@@ -323,21 +322,6 @@ impl MethodArgs {
             }),
             ..Options::default()
         })
-    }
-}
-
-/// What `--detect` found, and what is left to fill from.
-struct Faulty {
-    report: detect::Report,
-    left: Take,
-}
-
-impl Faulty {
-    fn of(file: &MarkerFile, path: &Path, apply: bool) -> Result<Self> {
-        let faults = FaultDetector::default().detect(file.take());
-        let report = detect::Report::new(file, path, &faults);
-        let left = if apply { faults.hide(file.take())? } else { file.take().clone() };
-        Ok(Self { report, left })
     }
 }
 
