@@ -43,9 +43,9 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// Everything from the data, with the built-in marker set and body.
+    /// Everything from the data, with the built-in marker sets and bodies.
     fn default() -> Self {
-        let known = vec![MarkerKnowledge::cmu_41()];
+        let known = MarkerKnowledge::built_in();
         Self {
             bones: Bones::Auto(known.clone()),
             known,

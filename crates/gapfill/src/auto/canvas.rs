@@ -42,10 +42,6 @@ impl<'a> Canvas<'a> {
         Self { take, pieces: BTreeMap::new(), estimates }
     }
 
-    pub fn take(&self) -> &Take {
-        self.take
-    }
-
     pub fn add(&mut self, pieces: Vec<Piece>) {
         for piece in pieces {
             self.pieces.insert((piece.marker, piece.frames.start), piece);

@@ -20,6 +20,8 @@ pub(super) struct Mixture {
     pub square_m2: Option<f64>,
     /// Names and weights, of sum 1.
     pub shares: Vec<(&'static str, f64)>,
+    /// So many methods it is worth beforehand, see [`Rival::credit`](super::rival::Rival::credit).
+    pub credit: f64,
 }
 
 /// Candidates that were mixed, to be mixed again with others.
@@ -93,6 +95,7 @@ impl Mixture {
             sigma_m: frames.clone().map(sigma).collect(),
             square_m2: mean_square(&errors, likeness),
             shares: shares(candidates, &weights),
+            credit: 1.0,
         }
     }
 
@@ -101,11 +104,13 @@ impl Mixture {
         self.square_m2.is_none_or(|square| square > limit_m * limit_m)
     }
 
-    /// Two fills of the same frames, weighed by their errors in pseudo-gaps as if these errors had nothing in common.
+    /// Two fills of the same frames, weighed by their credit and by their errors in pseudo-gaps as if these errors had
+    /// nothing in common.
     pub fn with(&self, other: &Self) -> Self {
         let weight = match (self.square_m2, other.square_m2) {
             (Some(a), Some(b)) if a + b > 0.0 => {
-                let (a, b) = (a.powf(-stack::SHARPNESS), b.powf(-stack::SHARPNESS));
+                let weigh = |square: f64, credit| credit * square.powf(-stack::SHARPNESS);
+                let (a, b) = (weigh(a, self.credit), weigh(b, other.credit));
                 if a.is_infinite() { 1.0 } else { a / (a + b) }
             }
             (None, Some(_)) => 0.0,
@@ -131,6 +136,7 @@ impl Mixture {
                 .map(|&(name, w)| (name, w * weight))
                 .chain(other.shares.iter().map(|&(name, w)| (name, w * rest)))
                 .collect(),
+            credit: weight * self.credit + rest * other.credit,
         }
     }
 }

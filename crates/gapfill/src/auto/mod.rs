@@ -152,10 +152,14 @@ impl GapFiller for Auto {
             return Err(FillError::NothingObserved);
         }
         let mut report = FillReport::new(self.name(), Termination::ClosedForm);
-        let (seen, never): (Vec<Gap>, Vec<Gap>) =
-            gaps.into_iter().partition(|gap| gap.context(take.frames()) != GapContext::Whole);
-        let refuse = |gap| Refused { gap, reason: Refusal::NeverSeen };
-        report.refusals.extend(never.into_iter().map(refuse));
+        let lit = lit(take);
+        let mut seen = Vec::new();
+        for gap in gaps {
+            match self.hopeless(take, &gap, &lit) {
+                Some(reason) => report.refusals.push(Refused { gap, reason }),
+                None => seen.push(gap),
+            }
+        }
 
         let mut canvas = Canvas::new(take);
         let others = &self.params.session;
@@ -229,17 +233,28 @@ fn is_short(frames: usize, rate_hz: f64) -> bool {
 }
 
 impl Auto {
+    /// Why nothing is to be tried for a gap; `None` where something is.
+    fn hopeless(&self, take: &Take, gap: &Gap, lit: &Range<usize>) -> Option<Refusal> {
+        let inside = gap.frames.start >= lit.start && gap.frames.end <= lit.end;
+        if gap.context(take.frames()) == GapContext::Whole {
+            Some(Refusal::NeverSeen)
+        } else if inside || self.params.edges == Edges::Hold {
+            None
+        } else {
+            Some(Refusal::OneSided)
+        }
+    }
+
     /// Asks other methods where these may do better than the neighbours.
     fn compete(&self, take: &Take, canvas: &mut Canvas<'_>) -> Result<(), FillError> {
         let rate_hz = take.rate_hz();
         let base = canvas.filled_but(&|piece| is_contested(piece, rate_hz))?;
         let lit = lit(take);
-        let known = |gap: &Gap| {
-            let inside = gap.frames.start >= lit.start && gap.frames.end <= lit.end;
-            gap.context(take.frames()) != GapContext::Whole
-                && (inside || self.params.edges == Edges::Hold)
-        };
-        let open: Vec<Gap> = base.gaps().into_iter().filter(known).collect();
+        let open: Vec<Gap> = base
+            .gaps()
+            .into_iter()
+            .filter(|gap| self.hopeless(take, gap, &lit).is_none())
+            .collect();
         if open.is_empty() {
             return Ok(());
         }
@@ -261,14 +276,7 @@ impl Auto {
         termination: Termination,
     ) -> Result<Choice, Refusal> {
         let stopped = termination == Termination::Stopped;
-        let lit = lit(canvas.take());
-        let missing = if stopped {
-            Refusal::Stopped
-        } else if gap.frames.start < lit.start || gap.frames.end > lit.end {
-            Refusal::OneSided
-        } else {
-            Refusal::NoNeighbour
-        };
+        let missing = if stopped { Refusal::Stopped } else { Refusal::NoNeighbour };
         let choice = canvas.settle(gap).ok_or(missing)?;
         match (self.params.max_error_m, choice.expected_m) {
             (Some(limit_m), Some(expected_m)) if expected_m > limit_m => {

@@ -112,9 +112,13 @@ pub(super) fn compete<'a>(
 fn hidden(take: &Take, groups: &[Group], pass: usize) -> Mask {
     let mut hidden = Mask::none(take.frames(), take.marker_count());
     for group in groups {
+        let frames = &group.gaps[0].frames;
         for (_, gap) in group.pseudo_gaps.iter().filter(|(at, _)| *at == pass) {
             for t in gap.hidden.start..gap.hidden.end.min(take.frames()) {
-                for &m in &group.missing {
+                // Markers come and go as they do in the gap.
+                let into = t.saturating_sub(gap.frames.start);
+                let like = (frames.start + into).min(frames.end - 1);
+                for &m in group.missing.iter().filter(|&&m| !take.is_observed(like, m)) {
                     let _ = hidden.insert(t, m);
                 }
             }
@@ -215,11 +219,12 @@ impl Group {
     fn mix(&self, take: &Take, rivals: Vec<Vec<Candidate>>, asked: &[&Rival]) -> Vec<Answer> {
         let seconds = self.gaps[0].len() as f64 / take.rate_hz();
         let mut candidates = rivals;
-        let of = |candidate: &Candidate| {
+        let credit_of = |candidate: &Candidate| {
             let rival = asked.iter().find(|rival| rival.name == candidate.name);
             rival.map_or(1.0, |rival| rival.credit(seconds))
         };
-        let mut credit: Vec<f64> = candidates.first().into_iter().flatten().map(of).collect();
+        let mut credit: Vec<f64> =
+            candidates.first().into_iter().flatten().map(credit_of).collect();
         if let Some(stocks) = &self.stocks {
             for (candidates, stock) in candidates.iter_mut().zip(stocks) {
                 candidates.extend(stock.iter().cloned());
@@ -248,10 +253,14 @@ impl Group {
             let (gap, of) = (&self.gaps[k], &candidates[k]);
             let tried =
                 Tried { pseudo_gaps: &pseudo_gaps, scored: &self.scored, likeness: &likeness[k] };
-            (!of.is_empty()).then(|| Answer {
-                gap: gap.clone(),
-                mixture: Mixture::weighted(of, weights, tried, &gap.frames, sides, rate_hz),
-                of_stock: self.stocks.is_some(),
+            (!of.is_empty()).then(|| {
+                let worth = of.iter().zip(&weights).map(|(of, w)| w * credit_of(of)).sum();
+                let mixture = Mixture::weighted(of, weights, tried, &gap.frames, sides, rate_hz);
+                Answer {
+                    gap: gap.clone(),
+                    mixture: Mixture { credit: worth, ..mixture },
+                    of_stock: self.stocks.is_some(),
+                }
             })
         };
         weights.into_iter().enumerate().filter_map(answer).collect()
