@@ -31,7 +31,7 @@ pub struct Options {
     /// What becomes of gaps at the start or end of the take, for methods that interpolate.
     pub edges: Edges,
     /// Gaps that are expected to be filled with a larger error stay open, for `auto`; positive, the root mean
-    /// square over a gap in metres. `None`: all are filled.
+    /// square over a gap in metres. `None`: a metre.
     pub max_error_m: Option<f64>,
     /// Other takes of the same person with the same markers to learn from, for `auto`.
     pub session: Vec<Arc<Take>>,

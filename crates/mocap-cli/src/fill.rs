@@ -100,7 +100,7 @@ struct MethodArgs {
     /// for `auto`
     #[arg(long, value_enum, default_value = "refuse")]
     edges: EdgesArg,
-    /// Leave gaps open that are expected to be filled with a larger error, for `auto`
+    /// Leave gaps open that are expected to be filled with a larger error, for `auto` [default: a metre]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     max_error: Option<f64>,
     /// Other recordings of the same person with the same markers to learn from, for `auto`

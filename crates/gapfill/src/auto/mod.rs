@@ -40,13 +40,17 @@ const POOR_M: f64 = 0.025;
 /// Where they expect to err by more, even those that take long.
 const HOPELESS_M: f64 = 0.06;
 
+/// A fill that expects to err by more tells nothing about a body.
+const MOST_M: f64 = 1.0;
+
 /// In shorter gaps a curve through the marker may be as good as anything.
 const CURVE_S: f64 = 0.12;
 
 /// What a user may ask of [`Auto`].
 #[derive(Debug, Clone, Default)]
 pub struct AutoParams {
-    /// Gaps that it expects to fill with a larger error stay open; positive. `None`: all are filled.
+    /// Gaps that it expects to fill with a larger error stay open; positive. `None`: a metre, which is no error but a
+    /// sign that nothing in the take is like the gap.
     ///
     /// # Units
     /// Metres, root mean square of the 3-D error over a gap.
@@ -278,12 +282,13 @@ impl Auto {
         let stopped = termination == Termination::Stopped;
         let missing = if stopped { Refusal::Stopped } else { Refusal::NoNeighbour };
         let choice = canvas.settle(gap).ok_or(missing)?;
-        match (self.params.max_error_m, choice.expected_m) {
-            (Some(limit_m), Some(expected_m)) if expected_m > limit_m => {
+        let limit_m = self.params.max_error_m.unwrap_or(MOST_M);
+        match choice.expected_m {
+            Some(expected_m) if expected_m > limit_m => {
                 canvas.erase(gap);
                 Err(Refusal::TooUncertain { expected_m, limit_m })
             }
-            (Some(_), None) => {
+            None if self.params.max_error_m.is_some() => {
                 canvas.erase(gap);
                 Err(Refusal::Untested)
             }

@@ -115,8 +115,8 @@ fn hidden(take: &Take, groups: &[Group], pass: usize) -> Mask {
         let frames = &group.gaps[0].frames;
         for (_, gap) in group.pseudo_gaps.iter().filter(|(at, _)| *at == pass) {
             for t in gap.hidden.start..gap.hidden.end.min(take.frames()) {
-                // Markers come and go as they do in the gap.
-                let into = t.saturating_sub(gap.frames.start);
+                // Markers come and go as they do in the gap, in a shorter pseudo-gap all the faster.
+                let into = t.saturating_sub(gap.frames.start) * frames.len() / gap.frames.len();
                 let like = (frames.start + into).min(frames.end - 1);
                 for &m in group.missing.iter().filter(|&&m| !take.is_observed(like, m)) {
                     let _ = hidden.insert(t, m);

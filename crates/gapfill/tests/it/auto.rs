@@ -83,3 +83,21 @@ fn ends_without_any_marker_stay_open_unless_asked() {
     let held = Auto::new(params).unwrap().fill(&take).unwrap();
     assert!(held.report().refusals.is_empty() && held.take().position(0, 0).is_some());
 }
+
+/// A body of giants, so that what is off by centimetres is off by metres.
+#[test]
+fn fills_that_are_off_by_metres_are_refused_unasked() {
+    let giant = articulated_take(200, 4).map_positions(|_, _, p| p.map(|c| 300.0 * c)).unwrap();
+    let hidden = Mask::from_fn(200, 8, |t, m| m > 3 && (60..150).contains(&t));
+    let take = giant.hide(&hidden).unwrap();
+    let filled = auto(None).fill(&take).unwrap();
+    let refused = &filled.report().refusals;
+    assert!(!refused.is_empty());
+    for refused in refused {
+        let Refusal::TooUncertain { expected_m, limit_m } = refused.reason else {
+            panic!("{:?}", refused.reason)
+        };
+        assert!(expected_m > limit_m && (limit_m - 1.0).abs() < 1e-12);
+    }
+    assert!(auto(Some(1e6)).fill(&take).unwrap().report().refusals.is_empty());
+}
