@@ -85,7 +85,7 @@ const KINKED: Kernel = Kernel {
 /// are found once.
 ///
 /// They were chosen on takes of `examples/development.rs` in `gapfill`: from a hundred drawn at random, those
-/// whose mixture errs least, left out one by one; then those of forty with forces, again left out one by one.
+/// whose mixture errs least, left out one by one; then six with forces were added after forty draws, and again left out one by one.
 pub(super) const VARIANTS: &[Variant] = &[
     Variant {
         name: "six-linear",
